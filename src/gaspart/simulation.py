@@ -30,18 +30,9 @@ ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
 """Allowed additional drift due to rounding, relative to the energy exchanged with contacts and walls."""
 PROPERTIES = (
-    "positions",
-    "unwrapped",
-    "images",
-    "velocities",
-    "speeds",
-    "spins",
-    "kinetic_energies",
-    "radii",
-    "masses",
-    "moments_of_inertia",
-    "species",
-)
+    "positions", "unwrapped", "images", "velocities", "speeds", "spins", "kinetic_energies", "radii",
+    "masses", "moments_of_inertia", "species",
+)  # fmt: skip
 """Properties of particles that `Simulation.properties` can return; `State` defines them."""
 
 
@@ -56,6 +47,11 @@ class Page(Protocol):
 
 class Simulation:
     """A run of a scene by an engine, which is advanced in time.
+
+    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
+    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
+    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
+    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Parameters
     ----------
@@ -83,13 +79,6 @@ class Simulation:
     See Also
     --------
     run : Simulate a scene and write a trajectory.
-
-    Notes
-    -----
-    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
-    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
-    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
-    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Examples
     --------
@@ -174,132 +163,33 @@ class Simulation:
         Raises
         ------
         SceneError
-            If the simulation has advanced, or the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add(position=(4.0, 4.0), velocity=(1.0, 0.0), radius=0.5)
-        >>> simulation.scene.count
-        1
+            If the simulation has advanced, or the new scene is impossible; nothing is changed then.
         """
-        self._change(
-            self.scene.with_particles(
-                gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
-            )
-        )
+        particle = gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
+        self._change(self.scene.with_particles(particle))
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
-        """Add particles at random positions, before the first advance.
-
-        Parameters
-        ----------
-        count : int
-            Number of particles.
-        radius : float, [length]
-            Radius.
-        **properties
-            Other properties as in `Species`.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has advanced, or the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add_random(count=20, radius=0.2, temperature=1.0)
-        >>> simulation.scene.count
-        20
-        """
+        """Add particles at random positions, as `add` does; `properties` are those of `Species`."""
         self._change(self.scene.with_species(gaspart.Species(count, radius, **properties)))
 
     def add_wall(self, start: Iterable[float], end: Iterable[float]) -> None:
-        """Add an interior wall of two dimensions, before the first advance.
-
-        Parameters
-        ----------
-        start : iterable of float, shape (2,), [length]
-            One end.
-        end : iterable of float, shape (2,), [length]
-            The other end.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has advanced, or the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add_wall(start=(3.0, 1.0), end=(3.0, 8.0))
-        >>> len(simulation.scene.walls)
-        1
-        """
+        """Add an interior wall of two dimensions from `start` to `end` (2,), as `add` does."""
         self._change(self.scene.with_walls(Wall(tuple(start), tuple(end))))
 
     def add_plate(self, corner: Iterable[float], edges: Iterable[Iterable[float]]) -> None:
-        """Add an interior wall of three dimensions (see `Plate`), before the first advance.
-
-        Parameters
-        ----------
-        corner : iterable of float, shape (3,), [length]
-            One corner.
-        edges : iterable of two vectors, shape (2, 3), [length]
-            Vectors from this corner to the two neighbouring corners.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has advanced, or the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0, 9.0))))
-        >>> simulation.add_plate(corner=(3.0, 1.0, 1.0), edges=((0.0, 7.0, 0.0), (0.0, 0.0, 7.0)))
-        >>> len(simulation.scene.walls)
-        1
-        """
+        """Add an interior wall of three dimensions (see `Plate`), as `add` does."""
         self._change(self.scene.with_walls(Plate(tuple(corner), tuple(map(tuple, edges)))))
 
     def add_box(self, lower: Iterable[float], upper: Iterable[float]) -> None:
-        """Add the walls of a rectangle or of a cuboid, before the first advance.
-
-        Parameters
-        ----------
-        lower : iterable of float, shape (d,), [length]
-            Lower corner.
-        upper : iterable of float, shape (d,), [length]
-            Opposite corner.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has advanced, or the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add_box(lower=(3.0, 3.0), upper=(6.0, 6.0))
-        >>> len(simulation.scene.walls)
-        4
-        """
+        """Add the walls of a rectangle or of a cuboid between two opposite corners (d,), as `add` does."""
         self._change(self.scene.with_walls(*box_of_walls(tuple(lower), tuple(upper))))
 
     def _change(self, scene: Scene) -> None:
         """Set up the simulation again for another scene; nothing changes if this fails."""
         if self._advanced:
-            raise SceneError(
-                "scene", "under way", "particles and walls can only be added before the first advance"
-            )
-        before = self.scene
-        self.scene = scene
+            rule = "particles and walls can only be added before the first advance"
+            raise SceneError("scene", "under way", rule)
+        before, self.scene = self.scene, scene
         try:
             self._set_up()
         except SceneError:
@@ -315,6 +205,8 @@ class Simulation:
         max_work: int | None = None,
     ) -> None:
         """Advance by a duration, to a time, or by some events, whichever is reached first.
+
+        The time-stepped engine stops at the end of the last step that ends by the target time.
 
         Parameters
         ----------
@@ -334,20 +226,6 @@ class Simulation:
         SceneError
             If there is no target, or if the target is in the past or not a number. The simulation is
             unchanged in this case.
-
-        Notes
-        -----
-        The time-stepped engine stops at the end of the last step that ends by the target time.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> simulation.advance(until=3.0)
-        >>> simulation.time
-        3.0
         """
         if max_events is not None:
             max_events = count_of("max_events", max_events)
@@ -392,115 +270,41 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Present simulated time.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Simulation(gp.Scene(gp.Container((9.0, 9.0)))).time
-        0.0
-        """
+        """Present simulated time."""
         return self._dynamics.time
 
     @property
     def state(self) -> State:
-        """Read-only state of all particles at the present time; its `copy` can be changed.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, speed=1.0)])
-        >>> gp.Simulation(scene, seed=1).state.velocities.shape
-        (20, 2)
-        """
+        """Read-only state of all particles at the present time; its `copy` can be changed."""
         return self._dynamics.state.read_only()
 
     @property
     def initial_state(self) -> State:
-        """Read-only state of all particles at time 0; its `copy` can be changed.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, speed=1.0)])
-        >>> gp.Simulation(scene, seed=1).initial_state.speeds.max().round(12)
-        np.float64(1.0)
-        """
+        """Read-only state of all particles at time 0; its `copy` can be changed."""
         return self._initial.copy().read_only()
 
     @property
     def tally(self) -> Tally:
-        """Copy of the counters and sums since the start, or since the last `reset_tally`.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(max_events=50)
-        >>> int(simulation.tally.collisions + simulation.tally.wall_hits.sum())
-        50
-        """
+        """Copy of the counters and sums since the start, or since the last `reset_tally`."""
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally; this is faster than reading `tally`.
+        """Return the sums of an optional tally by its name; this is faster than reading `tally`.
 
-        Parameters
-        ----------
-        tally : str
-            Name of the tally.
-
-        Returns
-        -------
-        ndarray
-            The sums. For "stress", the array has the shape (2 d^2 + d,), and contains the sums of the stress
-            tensor, of its collisional part and of the heat flux.
-
-        Raises
-        ------
-        SceneError
-            If the simulation was created without this tally.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((9.0, 9.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)])
-        >>> gp.Simulation(scene, seed=1, stress=True).sums_of("stress").shape
-        (10,)
+        For "stress", the array (2 d^2 + d,) contains the sums of the stress tensor, of its collisional part
+        and of the heat flux. Raises SceneError if the simulation was created without this tally.
         """
         if not any(optional_tally.name == tally for optional_tally in self.tallies):
             raise SceneError(tally, False, "was not requested; name the tally when the simulation is made")
         return self._dynamics.sums_of(tally)
 
     def reset_tally(self) -> None:
-        """Set all counters and sums to zero.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(max_events=50)
-        >>> simulation.reset_tally()
-        >>> int(simulation.tally.collisions)
-        0
-        """
+        """Set all counters and sums to zero."""
         self._dynamics.reset_tally()
 
     @property
     def record_events(self) -> bool:
-        """True if events are recorded (event-driven engine only).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.record_events = True
-        >>> simulation.record_events
-        True
-        """
+        """True if events are recorded (event-driven engine only)."""
         return self._log is not None
 
     @record_events.setter
@@ -518,44 +322,14 @@ class Simulation:
         The arrays for M events are time (M,), particles (M, 2), positions and velocities (M, 2, d). If
         contacts are rough, there are also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of
         `particles` is negative for hits: -1 - n at face n of the container or at the edge of its well, and -1
-        - 2d - n at interior wall n.
-
-        Raises
-        ------
-        SceneError
-            If `record_events` was not set to True.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.record_events = True
-        >>> simulation.advance(max_events=50)
-        >>> simulation.events["particles"].shape, simulation.events["positions"].shape
-        ((50, 2), (50, 2, 2))
+        - 2d - n at interior wall n. Raises SceneError if `record_events` was not set to True.
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")
         return self._log.events
 
     def again(self) -> Simulation:
-        """Return a new simulation of the same run at time 0.
-
-        Returns
-        -------
-        Simulation
-            A simulation with the same scene, engine, seed, initial state and tallies.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> simulation.again().time
-        0.0
-        """
+        """Return a new simulation at time 0 of the same scene, engine, seed, initial state and tallies."""
         return Simulation(self.scene, self.engine, self.seed, initial=self._given, tallies=self.tallies)
 
     def replay(self, by: str = "time", interval: float | None = None) -> Iterator[State]:
@@ -568,24 +342,10 @@ class Simulation:
         interval : float, [time], optional
             Time between states. Requires by="time".
 
-        Yields
-        ------
-        State
-            The states, from the start to the present time.
-
         Raises
         ------
         SceneError
             If `by` is unknown, or the interval is not positive.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> [state.time for state in simulation.replay(interval=1.0)]
-        [0.0, 1.0, 2.0]
         """
         if by == "time":
             step = number("interval", interval, "must be positive", above=0.0)
@@ -594,11 +354,8 @@ class Simulation:
         elif by == "event":
             again = self.again()
             yield again.state
-            while True:
+            while again.time < self.time:
                 again.advance(until=self.time, max_events=1)
-                if again.time >= self.time:
-                    yield again.state
-                    return
                 yield again.state
         else:
             raise SceneError("by", by, 'must be "time" or "event"')
@@ -632,15 +389,6 @@ class Simulation:
         SceneError
             If a name is unknown, if a time is outside the run, or if there are times and faces are open,
             because the particles in the container then differ between times.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> simulation.properties("positions", "speeds", at=[0.5, 1.5])["positions"].shape
-        (2, 20, 2)
         """
         for name in names:
             if name not in PROPERTIES:
@@ -661,27 +409,10 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:
-        """Check that the energy does not drift, and that positions and velocities are finite.
+        """Raise SimulationError if the energy has drifted, or a position or velocity is not finite.
 
-        Energy that contacts and walls add or remove does not count as drift.
-
-        Parameters
-        ----------
-        state : State, optional
-            The present state, if the caller has already computed it.
-
-        Raises
-        ------
-        SimulationError
-            If the energy has drifted, or a position or velocity is not finite.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> simulation.check_invariants()
+        Energy that contacts and walls add or remove does not count as drift. The caller may pass the present
+        state if it is already computed.
         """
         state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
@@ -702,54 +433,15 @@ class Simulation:
             )
 
     def show(self, frames: int = 200) -> Page:
-        """Return an interactive view of the run so far, which shows itself in a notebook.
-
-        Parameters
-        ----------
-        frames : int, default 200
-            Number of frames.
-
-        Returns
-        -------
-        View
-            The view, ``gaspart.view(self, frames)``.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has not advanced.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> type(simulation.show(frames=5)).__name__
-        'View'
-        """
+        """Return an interactive view of the run so far, see `view`; SceneError if it has not advanced."""
         # imported by its public name, because views are made from simulations
         return gaspart.view(self, frames)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return a checkpoint, from which `restore` continues bitwise identically.
 
-        Returns
-        -------
-        dict of str to ndarray
-            Arrays of the present state, and the data that identify the run: scene, seed, engine, version and,
-            if the caller supplied it, the initial state.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> later = simulation.again()
-        >>> later.restore(simulation.checkpoint())
-        >>> later.time
-        2.0
+        It has arrays of the present state, and the data that identify the run: scene, seed, engine, version
+        and, if the caller supplied it, the initial state.
         """
         return {**self._dynamics.checkpoint(), **self._identity()}
 
@@ -760,30 +452,16 @@ class Simulation:
         return checkpoint_identity(self.scene, settings, self.seed, given)
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue bitwise identically from a checkpoint.
+        """Continue bitwise identically from a checkpoint of the same scene, seed and engine.
 
-        Parameters
-        ----------
-        checkpoint : dict of str to ndarray
-            Checkpoint of a simulation of the same scene and seed, with the same engine. Settings of the
-            engine that do not affect results, such as the search or the number of threads, may differ.
+        Settings of the engine that do not affect results, such as the search or the number of threads, may
+        differ.
 
         Raises
         ------
         SceneError
             If the checkpoint belongs to another simulation, or if arrays are missing. The simulation is
             unchanged in this case.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> later = gp.Simulation(scene, seed=1)
-        >>> later.restore(simulation.checkpoint())
-        >>> later.tally.collisions == simulation.tally.collisions
-        True
         """
         check_identity(checkpoint, self._identity())
         self._advanced = True

@@ -11,10 +11,11 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart.accuracy import fit, speed, table
+from gaspart.accuracy import fit, table
 from gaspart.accuracy.table import price_of
 from gaspart.analysis.observables import observables_with
 from gaspart.cli import main
+from gaspart.reproduction.cost import speed_factor
 
 
 def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
@@ -62,7 +63,7 @@ def test_noise_of_the_pressure_of_a_dilute_gas_is_that_of_independent_contacts(e
 
 
 def test_this_machine_is_timed_in_less_than_some_seconds():
-    assert 0.05 < speed.factor(3, "event", "float64", 500) < 20.0
+    assert 0.05 < speed_factor(3, "event", "float64", 500) < 20.0
 
 
 # What the features of a scene cost with an engine.

@@ -99,8 +99,8 @@ rule report:
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
-        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,
     script:
         "../scripts/report.py"
@@ -117,8 +117,8 @@ use rule report as report_in_one_file with:
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
-        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=True,
 
 
@@ -135,6 +135,6 @@ use rule report as report_of_first with:
         figures={figure: FIGURES[figure] for figure in FIRST},
         own_captions={},
         films={},
-        opening=None,
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,

@@ -31,7 +31,7 @@ from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
 from gaspart.theory.conditions import Conditions
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
@@ -107,10 +107,7 @@ class Pilot:
 
     @property
     def main(self) -> str:
-        """Name of the largest component in units of its scale, and of these the least accurate one.
-
-        If symmetry makes some components of a vector vanish, it is another one.
-        """
+        """Name of the largest component in units of its scale, and of these the least accurate one."""
         sizes = {
             name: (abs(part.value) / part.scale if part.scale > 0.0 else 0.0, part.accuracy)
             for name, part in self.components.items()
@@ -129,11 +126,7 @@ class Pilot:
 
 
 def speed_of(target: Target, engine: Engine) -> float:
-    """Measure the CPU seconds that an engine needs per unit of simulated time.
-
-    Once the kernels are compiled, this takes a fraction of a second. Raises SceneError if the engine cannot
-    simulate the scene.
-    """
+    """Measure CPU seconds per unit of simulated time; SceneError if the engine cannot simulate the scene."""
     if target.correlated:  # sampling takes longer than the simulation between samples
         return _speed_of_sampling(target, engine)
     tallies = target.tallies(engine)
@@ -151,10 +144,7 @@ def speed_of(target: Target, engine: Engine) -> float:
 
 
 def _speed_of_sampling(target: Target, engine: Engine) -> float:
-    """Measure the speed of a run with correlations by two short runs.
-
-    The first run compiles the kernels.
-    """
+    """Measure the speed of a run with correlations by two short runs. The first run compiles the kernels."""
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
     with scratch_folder() as folder:
@@ -173,10 +163,7 @@ def _make(
     scheduled: tuple[float, float, Correlations | None],
     displacements: bool = True,
 ) -> Path:
-    """Run a target with a schedule: duration, time between frames, and correlations.
-
-    Pilots store `displacements` because other observables need them too.
-    """
+    """Run a target with a schedule; it stores `displacements`, which other observables need too."""
     duration, interval, correlations = scheduled
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval, initial=target.start, correlations=correlations,
@@ -186,10 +173,7 @@ def _make(
 
 
 def require_defined(target: Target) -> None:
-    """Raise SceneError for an observable that is undefined in a scene for runs of any length.
-
-    The test is a measurement in a very short run.
-    """
+    """Raise SceneError, by a very short run, for an observable that is undefined for any run of a scene."""
     if target.correlated:  # the engines state these requirements
         return
     interval = _BRIEF * target.crossing / _TRIED
@@ -200,10 +184,7 @@ def require_defined(target: Target) -> None:
 
 
 def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
-    """Return the components of an observable, or the reason why the run is too short.
-
-    Raises SceneError if the observable is undefined in the scene.
-    """
+    """Return the components, or why the run is too short; SceneError if the observable is undefined."""
     try:
         estimates = components(trajectory, target.observable)
     except SceneError as error:
@@ -215,12 +196,9 @@ def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, fraction: float = 1.0) -> Pilot:
-    """Run a pilot of about the given CPU time, and measure the observable.
-
-    speed : result of `speed_of`.
-    fraction : fraction of the CPU time that remains after preparation, unless a stored pilot is reused.
-
-    A pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
+    """Run a pilot of about the given CPU time, and measure the observable. `speed`: result of `speed_of`.
+    `fraction`: fraction of the CPU time that remains after preparation, unless a stored pilot is reused. A
+    pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
     the pilot has no measured value. Raises SceneError if the observable is undefined in the scene.
     """
     scheduled = target.schedule(engine, fraction * seconds / speed)
@@ -254,10 +232,7 @@ def _worst(estimates: dict[str, Component]) -> Component:
 
 
 def _equilibrate(path: Path) -> float:
-    """Return the `settling_time` of a pilot, after extending the pilot until it is steady.
-
-    The pilot is steady if the settling time lies within the discarded part.
-    """
+    """Return the `settling_time` of a pilot, extended until it lies within the discarded part."""
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
             settled, end = settling_time(trajectory), float(trajectory["time"][-1])
@@ -268,11 +243,9 @@ def _equilibrate(path: Path) -> float:
 
 
 def settling_time(trajectory: xr.Dataset) -> float:
-    """Return the time after which a run is steady.
-
-    The test uses the kinetic energy and the mean position of the particles along each axis with walls. Each
-    of these series has reached its mean over the second half of the run, and from then on stays within the
-    range of the second half.
+    """Return the time after which a run is steady. The test uses the kinetic energy and the mean position of
+    the particles along each axis with walls. Each of these series has reached its mean over the second half
+    of the run, and from then on stays within the range of the second half.
     """
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
@@ -294,10 +267,7 @@ def _settled_at(series: np.ndarray) -> int:
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
-    """Return a hash that identifies the content of a pilot.
-
-    All observables that need the same stored data have the same hash, so they share pilots.
-    """
+    """Return a hash of a pilot's content, shared by observables that need the same stored data."""
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
         kind = target.declared.needs
@@ -339,10 +309,9 @@ class Trials:
     _begun: float = field(default_factory=time.process_time)
 
     def begin(self) -> None:
-        """Find the candidates and run the pilot of the exact engine.
-
-        This pilot takes half of the CPU time if another engine may be cheaper. Raises SceneError if no engine
-        can simulate the scene, or if the observable is undefined in the scene.
+        """Find the candidates and run the pilot of the exact engine. This pilot takes half of the CPU time if
+        another engine may be cheaper. Raises SceneError if no engine can simulate the scene, or if the
+        observable is undefined in the scene.
         """
         engines, self.refused = suitable_engines(self.target)
         if not engines or not engines[0].reference:
@@ -374,10 +343,7 @@ class Trials:
         self._ask_another()
 
     def make(self, candidate: Candidate, part: float = 0.5) -> Pilot:
-        """Run another pilot with a fraction of the CPU time.
-
-        The third and the fourth pilot get less time.
-        """
+        """Run another pilot with a fraction of the CPU time. The third and the fourth pilot get less time."""
         if candidate not in self.speeds:
             raise self._no_engine()
         spent = 0.0 if self.pilots else time.process_time() - self._begun
@@ -408,9 +374,8 @@ class Trials:
         return any(pilot.engine == engine for pilot in self.pilots)
 
     def bias(self, candidate: Candidate) -> float:
-        """Return the bound on a candidate's bias, from theory or from its pilot.
-
-        The bound from the pilot is its difference from the pilot of the exact engine.
+        """Return the bound on a candidate's bias, from theory or its pilot's difference from the
+        exact one.
         """
         own = [pilot for pilot in self.known if pilot.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
@@ -430,9 +395,8 @@ class Trials:
 
     @property
     def reference(self) -> Pilot:
-        """Longest pilot of a sufficiently accurate engine, otherwise of any engine.
-
-        Raises SceneError if no pilot measured the observable.
+        """Longest pilot of an accurate engine, otherwise of any; SceneError if none measured the
+        observable.
         """
         accurate = [pilot for pilot in self.known if self._is_accurate(pilot)] or self.known
         if accurate:
@@ -444,10 +408,8 @@ class Trials:
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
-        """Return the noise of the observable in a run with an engine.
-
-        If the engine stores impulses, the noise comes from a pilot with impulses, otherwise from a pilot that
-        counts contacts. Raises SceneError if no pilot measured the observable.
+        """Return the noise of the observable in a run with an engine. It comes from a pilot with impulses if
+        the engine stores them.
         """
         with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):
@@ -492,10 +454,9 @@ class Trials:
 
 
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
-    """Raise the bound on a candidate's bias to its measured difference from the exact engine.
-
-    The difference between the pilots of the two engines in the same component counts, including its error, if
-    it is significant.
+    """Raise the bound on a candidate's bias to its measured difference from the exact engine. The difference
+    between the pilots of the two engines in the same component counts, including its error, if it is
+    significant.
     """
     exact = [pilot for pilot in pilots if pilot.engine.reference]
     if candidate.engine.reference or not exact or exact[0].main not in own.components:

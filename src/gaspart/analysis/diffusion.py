@@ -51,14 +51,20 @@ def diffusion_coefficient(
 ) -> Observable:
     """Measure the diffusion coefficient D from the slope of the mean-squared displacement.
 
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
+    permits. D is the first slope that agrees with the previous slope within two standard errors of their
+    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
+    missing. D is then the last slope, and the estimated size of the tail is added to the error.
+
+    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
+    D does not exist, for example for discs and between walls.
+
+    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
+    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
+    the derivative of the theoretical mean-squared displacement.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
         Measure only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as
         a single tracer, the run is divided into 16 blocks, and each block must contain the lags.
@@ -86,30 +92,6 @@ def diffusion_coefficient(
         If there is neither a periodic axis nor a lag, if the run is too short, or if it has too few frames.
         If no lag is passed, also if the slope still changes at the longest lags, and for discs whose total
         momentum persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
-
-    Notes
-    -----
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
-    permits. D is the first slope that agrees with the previous slope within two standard errors of their
-    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
-    missing. D is then the last slope, and the estimated size of the tail is added to the error.
-
-    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
-    D does not exist, for example for discs and between walls.
-
-    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
-    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
-    the derivative of the theoretical mean-squared displacement.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.diffusion_coefficient(simulation, lag=1.0).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start, about=about) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
@@ -146,10 +128,8 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags, in frames, of 6, 12, 24, 48 ... collisions of a particle.
-
-    The run is divided into `parts` equal parts. The longest lag is at most half of the frames of a part.
-    Raises SceneError under the conditions of `lags_of_slopes`.
+    """Return the lags, in frames, of 6, 12, 24 ... collisions of a particle, up to half of one of `parts`
+    parts.
     """
     return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
@@ -178,10 +158,8 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags one frame shorter and one frame longer than a lag, in frames.
-
-    Raises SceneError for a lag that is shorter than the time between frames, or longer than half of a part.
-    The run is divided into `parts` equal parts.
+    """Return the lags one frame shorter and longer than a lag; SceneError if they are too short, or longer
+    than half of a part.
     """
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
@@ -200,10 +178,8 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """Return the lags, in frames, of 6, 12 and 24 collisions of a particle.
-
-    The slope that gives D lies between the second and the third lag. The first lag serves to test that the
-    slope is constant.
+    """Return the lags, in frames, of 6, 12 (to test that the slope is constant) and 24 collisions of a
+    particle.
     """
     first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
     return first, middle, last
@@ -227,10 +203,8 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """Return a mask (d,) of the axes along which momentum persists for `lag` frames.
-
-    The momentum is the total momentum of the moving particles. It persists if it is conserved, or if more
-    than half of it remains, for example with a few obstacles among many particles.
+    """Return a mask (d,) of the axes along which at least half of the total momentum persists for `lag`
+    frames.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -243,10 +217,7 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 
 
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
-    """Compute half of the slopes of the squared displacements between consecutive lags.
-
-    The shape is (G, stretches, d).
-    """
+    """Compute half of the slopes (G, stretches, d) of the squared displacements between consecutive lags."""
     squares = groups.means(
         lambda paths: np.array(
             [((paths[lag:] - paths[: len(paths) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
@@ -256,10 +227,8 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
-    """Find the first slope that agrees with the previous one, among slopes at increasing lags.
-
-    The slopes have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected
-    tail. The tail is 0 if the slope agrees with the previous slope within its error along every axis. `sizes`
+    """Find the first slope that agrees with the previous one, among slopes at increasing lags. The slopes
+    have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected tail. `sizes`
     (G,) are the numbers of particles in the groups. Raises SceneError if the last slopes change by more than
     a slow tail explains.
     """
@@ -285,12 +254,20 @@ def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tup
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """Measure the Maxwell-Stefan coefficient of mutual diffusion of two species.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
+    Then
+
+        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
+
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
+    first slope that agrees with the previous slope within two standard errors (E. Helfand, Phys. Rev. 119, 1
+    (1960)) (R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005)). The attribute `lags`
+    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
+    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
+    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
+    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
+    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
+    are more accurate.
 
     Returns
     -------
@@ -303,38 +280,6 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
         If there are not exactly two species; if there are fixed particles, walls or contacts that lose
         energy; for discs, for which the coefficient does not exist; if frames are too far apart or the run is
         too short; or if the slope still changes at the longest lags.
-
-    Notes
-    -----
-    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
-    Then
-
-        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
-
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
-    first slope that agrees with the previous slope within two standard errors [1]_ [2]_. The attribute `lags`
-    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
-    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
-    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
-    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
-    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
-    are more accurate.
-
-    References
-    ----------
-    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
-    .. [2] R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((5.0, 5.0, 5.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.4, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(60.0)
-    >>> gp.analysis.mutual_diffusion(simulation).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)
@@ -350,20 +295,15 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """Yield the slopes of the squared change of a path between consecutive lags, per frame.
-
-    Each slope is a series over the time origins at which both lags end within the run.
-    """
+    """Yield the slopes of the squared change of a path between consecutive lags, per frame."""
     for early, late in itertools.pairwise(lags):
         number = len(path) - late
         yield (_squares(path, late) - _squares(path, early)[:number]) / (late - early)
 
 
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
-    """Find the first slope that no longer changes.
-
-    Returns the index of the slope and the estimated size of the neglected tail. The criteria are the same as
-    in `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
+    """Find the first slope that no longer changes, by the criteria of `settled_slope`; return index
+    and tail.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]

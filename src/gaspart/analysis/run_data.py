@@ -76,9 +76,8 @@ class RunData:
         return np.asarray(self.data[name].values)
 
     def block_length(self, blocks: int) -> int:
-        """Return the number of frames in each of `blocks` equal blocks, after the first frame.
-
-        Frames that remain do not belong to any block. Raises ValueError if there are too few frames.
+        """Return the number of frames in each of `blocks` equal blocks after the first; ValueError if too
+        few.
         """
         length = (len(self.time) - 1) // blocks
         if length < 1:
@@ -135,9 +134,8 @@ class RunData:
         return self._each(per_particle(self.scene, "radius")).astype(float)
 
     def _each(self, values: np.ndarray) -> np.ndarray:
-        """Extend values of the initial particles to all N particle numbers.
-
-        Particles that enter later have the same properties as the initial particles.
+        """Extend values of the initial particles to all N particle numbers. Particles that enter later have
+        the same properties as the initial particles.
         """
         return np.resize(values, self.count)
 
@@ -165,9 +163,8 @@ class RunData:
 
     @cached_property
     def moving(self) -> np.ndarray:
-        """Mask (N,) of particles that are not fixed.
-
-        Raises SceneError if the file does not contain all particles, unless the run is centred.
+        """Mask (N,) of particles that are not fixed. Raises SceneError if the file does not contain all
+        particles, unless the run is centred.
         """
         if not self.centred:
             self.require_all()
@@ -175,18 +172,15 @@ class RunData:
 
     @property
     def conserved(self) -> np.ndarray:
-        """Mask (d,) of axes along which the total momentum is conserved.
-
-        Motion along these axes is measured relative to the centre of mass. If motion is measured relative to
-        rest, all elements are False.
+        """Mask (d,) of axes along which the total momentum is conserved. Motion along these axes is measured
+        relative to the centre of mass. If motion is measured relative to rest, all elements are False.
         """
         return np.array(self.scene.conserved_axes) & (self.about == FLOW)
 
     @cached_property
     def accessible(self) -> Accessible:
-        """Volume and areas accessible to centres, excluding the fixed particles of the run.
-
-        Raises SceneError if the file does not contain the fixed species.
+        """Volume and areas accessible to centres, excluding the fixed particles of the run. Raises SceneError
+        if the file does not contain the fixed species.
         """
         if not any(kind.fixed and kind.count for kind in self.scene.species):
             return Accessible(self.scene)
@@ -195,10 +189,9 @@ class RunData:
 
     @cached_property
     def flow_axes(self) -> list[int]:
-        """Axes along which the flow velocity may vary; none if the gas can only move as a whole.
-
-        The scene may define these axes (`Facts.flow_axes`). If it does not, they are the axes along which a
-        wind may vary.
+        """Axes along which the flow velocity may vary; none if the gas can only move as a whole. The scene
+        may define these axes (`Facts.flow_axes`). If it does not, they are the axes along which a wind may
+        vary.
         """
         if self.about != FLOW:
             return []
@@ -207,12 +200,11 @@ class RunData:
 
     @property
     def wind(self) -> np.ndarray:
-        """Mask (d,) of the periodic axes along which a wind (a mean velocity) exists.
-
-        A wind exists along an axis if the momentum along the axis is not conserved, and if its mean over the
-        run is more than three times the equilibrium scatter sqrt(M k_B T). If a weaker wind is neglected, the
-        temperature is too high by at most the fraction 9 / (d N). For a single particle no wind is assumed,
-        because its momentum has no scatter for comparison.
+        """Mask (d,) of the periodic axes along which a wind (a mean velocity) exists. A wind exists along an
+        axis if the momentum along the axis is not conserved, and if its mean over the run is more than three
+        times the equilibrium scatter sqrt(M k_B T). If a weaker wind is neglected, the temperature is too
+        high by at most the fraction 9 / (d N). For a single particle no wind is assumed, because its momentum
+        has no scatter for comparison.
         """
         has_flow = np.zeros(self.dimension, dtype=bool)
         masses = self.masses[self.moving]

@@ -22,9 +22,8 @@ from gaspart.cli.arguments import (
     set_command,
     several,
 )
-from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
+from gaspart.cli.options import accuracy_lines, add_setting, as_option, engine_settings, one_of
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.cli.stated_run import accuracy_lines
 from gaspart.engines import ENGINES, engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
@@ -195,10 +194,8 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """Return the accuracies of --until.
-
-    Raises UsageError for options that exclude or require each other. Without a duration, the message suggests
-    a duration for the scene.
+    """Return the accuracies of --until. Raises UsageError for options that exclude or require each other.
+    Without a duration, the message suggests a duration for the scene.
     """
     if options.until is not None:
         if options.duration is not None:

@@ -168,10 +168,7 @@ def _theory(options: argparse.Namespace) -> None:
 
 
 def _of_mixture(options: argparse.Namespace) -> None:
-    """Print a line for each theory and density.
-
-    Properties of pairs have a line for each pair of species.
-    """
+    """Print a line for each theory and density. Properties of pairs have a line for each pair of species."""
     from gaspart import theory
 
     name = _QUANTITIES[options.quantity].mixture

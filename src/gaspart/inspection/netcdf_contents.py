@@ -36,9 +36,8 @@ _RIGHT_ANGLE = 2e-5
 
 
 def needed_bytes(file: BinaryIO) -> int | None:
-    """Return the minimum size of a netCDF-3 file according to its header; None for another format.
-
-    If a file is shorter, the library reads zeros without a warning. The format:
+    """Return the minimum size of a netCDF-3 file according to its header; None for another format. If a file
+    is shorter, the library reads zeros without a warning. The format:
     https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html
     """
     file.seek(0)
@@ -238,10 +237,8 @@ def _positions(file: Any, lengths: np.ndarray | None, path: Path) -> tuple[Vecto
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:
-    """Return the times in double precision, and their resolution.
-
-    LAMMPS may store steps and a scale factor instead. OVITO stores frame numbers in `time`, and the time, if
-    it is known, in `Time`.
+    """Return the times in double precision, and their resolution. LAMMPS may store steps and a scale factor,
+    and OVITO frame numbers in `time` and times in `Time`.
     """
     name = "Time" if str(getattr(file, "program", "")) == "OVITO" else "time"
     if name not in file.variables:

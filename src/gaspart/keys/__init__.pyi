@@ -1,4 +1,5 @@
 from gaspart.keys.classes import declare as declare
+from gaspart.keys.classes import documented as documented
 from gaspart.keys.classes import field_values as field_values
 from gaspart.keys.classes import from_mapping as from_mapping
 from gaspart.keys.classes import instance_of as instance_of

@@ -24,6 +24,25 @@ def declare(kind: Kind) -> dict[str, Any]:
     return {"kind": kind}
 
 
+def documented(cls: type[T]) -> type[T]:
+    """Add the declared fields of a dataclass to its docstring: they are described in `declare` alone."""
+    rows = []
+    for item in fields(cls):
+        kind = item.metadata["kind"]
+        words = f"{{{', '.join(map(repr, kind['enum']))}}}" if "enum" in kind else item.type
+        required = item.default is item.default_factory  # both MISSING
+        default = (
+            ""
+            if required
+            else ", optional"
+            if item.default in (None, MISSING)
+            else f", default {item.default!r}"
+        )
+        rows.append(f"    {item.name} : {words}{default}\n        {kind['description']}\n")
+    cls.__doc__ = f"{cls.__doc__}\n    Parameters\n    ----------\n{''.join(rows)}    "
+    return cls
+
+
 def validate(instance: Any) -> None:
     """Check and convert every field of a frozen dataclass during its construction."""
     for name, check, optional in _checks(instance.__class__):

@@ -37,13 +37,9 @@ def trace(
     size: tuple[int, int],
     lines: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
-
-    positions, radii, colours : shapes (N, 3), (N,), (N, 3).
-    lengths : (3,), sides of the container, whose face at z = 0 is drawn as the floor.
-    size : (W, H) in pixels.
-    lines : (M, 2, 3), drawn like the edges of the container.
-
+    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels. `positions` and `radii` and
+    `colours`: shapes (N, 3), (N,), (N, 3). `lengths`: (3,), sides of the container, whose face at z = 0 is
+    drawn as the floor. `size`: (W, H) in pixels. `lines`: (M, 2, 3), drawn like the edges of the container.
     The function returns the picture, and the kind of object in the middle of each pixel (H, W).
     """
     spheres = np.column_stack([positions, radii]).astype(float)
@@ -65,11 +61,9 @@ def trace(
 
 
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
-    """Divide container and spheres into cubic cells, and list the spheres in each cell.
-
-    The function returns the lowest corner (3,), the side of a cell, the numbers of cells (3,), the lists of
-    the spheres that reach into each cell c (listed[first[c] : first[c + 1]]), and each sphere's lowest cell
-    (N, 3).
+    """Divide container and spheres into cubic cells, and list the spheres in each cell. The function returns
+    the lowest corner (3,), the side of a cell, the numbers of cells (3,), the lists of the spheres that reach
+    into each cell c (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3).
     """
     low, high = np.zeros(3), lengths.copy()
     side = float(lengths.max())

@@ -46,11 +46,9 @@ class _Columns:
 
 
 class Row(_Columns):
-    """Row of a table.
-
-    Columns are single numbers or words, single estimates, or arrays over the inner dimensions. Arrays have no
-    entries for replicas that only other rows have. Use a row to format a text, as `"{count:.0f}
-    discs".format_map(row)`.
+    """Row of a table. Columns are single numbers or words, single estimates, or arrays over the inner
+    dimensions. Arrays have no entries for replicas that only other rows have. Use a row to format a text, as
+    `"{count:.0f} discs".format_map(row)`.
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
@@ -65,13 +63,12 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """Rows of a data set along its dimension `over`; empty if it has no such dimension.
-
-    A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise
-    an array (rows, ...). Other variables and attributes are as in the data set. `table[condition]` contains
-    the rows for which the condition (rows,) is true. A slice, or a list of indices, selects rows too.
-    `table[0]` is a Row, and iteration yields Rows. A table without rows is false. Raises AttributeError for a
-    name that is no column.
+    """Rows of a data set along its dimension `over`; empty if it has no such dimension. A column is an
+    attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise an array (rows,
+    ...). Other variables and attributes are as in the data set. `table[condition]` contains the rows for
+    which the condition (rows,) is true. A slice, or a list of indices, selects rows too. `table[0]` is a Row,
+    and iteration yields Rows. A table without rows is false. Raises AttributeError for a name that is no
+    column.
     """
 
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
@@ -79,9 +76,8 @@ class Table(_Columns):
 
     @classmethod
     def from_prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
-        """Return the rows along `over`, from the variables that begin with its name.
-
-        See the function `merge_with_prefixes`.
+        """Return the rows along `over`, from the variables that begin with its name. See the function
+        `merge_with_prefixes`.
         """
         start = f"{over}_"
         names = {name: str(name).removeprefix(start) for name in dataset if str(name).startswith(start)}
@@ -99,9 +95,8 @@ class Table(_Columns):
         return (self[n] for n in range(len(self)))
 
     def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of the keys, and the rows with these values, in ascending order.
-
-        Keys are names of columns, or arrays (rows,).
+        """Yield the values of the keys, and the rows with these values, in ascending order. Keys are names of
+        columns, or arrays (rows,).
         """
         if not self:
             return
@@ -116,10 +111,7 @@ class Table(_Columns):
         return Table(part, self._over)
 
     def assign(self, **columns: Any) -> Table:
-        """Return the table with further columns.
-
-        A column is an array (rows,), or a value for all rows.
-        """
+        """Return the table with further columns. A column is an array (rows,), or a value for all rows."""
         filled = {
             name: (self._over, values if np.ndim(values) else [values] * len(self))
             for name, values in _spread(columns).items()
@@ -136,16 +128,11 @@ def table(
     units: Mapping[str, str] | None = None,
     of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
-    """Return a data set with a row for each point; row(point, *rest) returns the columns.
-
-    An Estimate `name` becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and
-    error becomes the first two.
-
-    inner, units : see `from_rows`.
-    of : points of each row, if `points` do not determine them.
-
-    If rows are made from points of a grid (see `made_of`), the variable `over`_made_of has their experiments
-    and names, a line for each.
+    """Return a data set with a row for each point; row(point, *rest) returns the columns. An Estimate `name`
+    becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and error becomes the first
+    two. `inner` and `units`: see `from_rows`. `of`: points of each row, if `points` do not determine them. If
+    rows are made from points of a grid (see `made_of`), the variable `over`_made_of has their experiments and
+    names, a line for each.
     """
     rows = [_spread(row(point, *rest)) for point in points]
     named = ["\n".join(made_of(item)) for item in (points if of is None else of)]
@@ -154,9 +141,8 @@ def table(
 
 
 def made_of(value: Any) -> list[str]:
-    """Return a text `experiment/name` for each point that a value contains.
-
-    The value is a point of a grid, or lists and mappings of such points.
+    """Return a text `experiment/name` for each point that a value contains. The value is a point of a grid,
+    or lists and mappings of such points.
     """
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]
@@ -165,13 +151,9 @@ def made_of(value: Any) -> list[str]:
 
 
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
-    """Return a claim about each row.
-
-    form : function that makes the claim, such as `Claim.at_most`.
-    stated : arguments of this function.
-
-    Texts may name columns, as in "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays must
-    have one element for each row. Otherwise ValueError is raised.
+    """Return a claim about each row. `form`: function that makes the claim, such as `Claim.at_most`.
+    `stated`: arguments of this function. Texts may name columns, as in "Z at {packing_fraction:.2g}". Lists,
+    arrays and estimates of arrays must have one element for each row. Otherwise ValueError is raised.
     """
     claims = []
     for n, row in enumerate(rows):
@@ -204,9 +186,8 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def merge_with_prefixes(**tables: xr.Dataset) -> xr.Dataset:
-    """Merge tables with different rows to one data set; add their dimensions as prefixes.
-
-    The column `volume` along `path` becomes the variable `path_volume`.
+    """Merge tables with different rows to one data set; add their dimensions as prefixes. The column `volume`
+    along `path` becomes the variable `path_volume`.
     """
     renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
     return xr.merge(renamed, join="outer", compat="no_conflicts")
@@ -218,14 +199,11 @@ def from_rows(
     inner: Inner = (),
     units: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
-    """Return a variable over the dimension `over` for each key of the rows.
-
-    inner : further dimensions of arrays, either the same for all, or by key.
-    units : units by key; "1" for other keys. By default no units are stated.
-
-    Shorter arrays are padded with NaN. Missing entries of a row are NaN. A key with the suffix _error has the
-    dimensions and the unit of the key without the suffix. A key with the suffix _freedom has the same
-    dimensions.
+    """Return a variable over the dimension `over` for each key of the rows. `inner`: further dimensions of
+    arrays, either the same for all, or by key. `units`: units by key; "1" for other keys. By default no units
+    are stated. Shorter arrays are padded with NaN. Missing entries of a row are NaN. A key with the suffix
+    _error has the dimensions and the unit of the key without the suffix. A key with the suffix _freedom has
+    the same dimensions.
     """
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
@@ -239,12 +217,9 @@ def from_rows(
 
 
 def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
-    """Return the entries of a row for numbers with uncertainties.
-
-    The entries are `name`, `name`_error, and `name`_freedom.
-
-    numbers : by name, an Estimate, or a value and its error; numbers or arrays.
-    freedom : degrees of freedom for values with errors; without it they have no such entry.
+    """Return the entries of a row for numbers with uncertainties. The entries are `name`, `name`_error, and
+    `name`_freedom. `numbers`: by name, an Estimate, or a value and its error; numbers or arrays. `freedom`:
+    degrees of freedom for values with errors; without it they have no such entry.
     """
     row: dict[str, Any] = {}
     for name, number in numbers.items():
@@ -258,9 +233,8 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Join arrays of the same number of dimensions along a new first axis.
-
-    An empty array is replaced by a single NaN.
+    """Join arrays of the same number of dimensions along a new first axis. An empty array is replaced by a
+    single NaN.
     """
     shape = max((array.shape for array in arrays), key=len)
     if all(array.shape == shape for array in arrays):

@@ -30,7 +30,7 @@ from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
@@ -68,6 +68,9 @@ def run(
     The run ends after `duration`, or, with `until`, when all requested accuracies are reached. If an
     interrupted run with the same settings and program version is at `path`, it is continued. If a complete
     run with the same settings is at `path`, nothing is changed.
+
+    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
+    before the handlers of the caller are executed.
 
     Parameters
     ----------
@@ -143,11 +146,6 @@ def run(
     open_trajectory : Open the file as an xarray.Dataset.
     Simulation : Advance a scene without a file.
 
-    Notes
-    -----
-    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
-    before the handlers of the caller are executed.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -182,10 +180,8 @@ def _fields_among(kind: Any, values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run.
-
-    Raises SceneError under the same conditions as `in_replicas`, and for an accuracy that the mean of the
-    replicas can never reach.
+    """Return the recipes of the replicas of a run. Raises SceneError under the same conditions as
+    `in_replicas`, and for an accuracy that the mean of the replicas can never reach.
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
@@ -215,10 +211,8 @@ def _start(
     replicas: int,
     seed: int | tuple[int, ...],
 ) -> State | None:
-    """Return the initial state of a run; for a file, its last state.
-
-    Raises SceneError if this file is one of the files of the run at `path`, even under another name, because
-    the run would overwrite it.
+    """Return the initial state of a run; for a file, its last state. Raises SceneError if this file is one of
+    the files of the run at `path`, even under another name, because the run would overwrite it.
     """
     paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
@@ -246,9 +240,8 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """Return the accuracies that end a run, or None for a run with a duration.
-
-    Raises SceneError for arguments that exclude or require each other.
+    """Return the accuracies that end a run, or None for a run with a duration. Raises SceneError for
+    arguments that exclude or require each other.
     """
     if until is not None:
         if duration is not None:
@@ -277,6 +270,11 @@ def resume(
 
     Without a `duration` the interrupted run whose file is ``<path>.partial`` is continued to its end. With a
     `duration` the complete run at `path` is continued to that time.
+
+    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
+    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
+    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
+    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
 
     Parameters
     ----------
@@ -309,13 +307,6 @@ def resume(
     See Also
     --------
     run : Begin a run.
-
-    Notes
-    -----
-    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
-    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
-    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
 
     Examples
     --------

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError
 from gaspart.scene.composition import Composition
-from gaspart.scene.faces import FACES, FLOW, GRADIENT, LeesEdwards, Open, Thermal
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
+from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards, Open
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
+from gaspart.scene.surfaces import FACES, Thermal
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,11 +47,8 @@ def flow(scene: Composition, positions: np.ndarray) -> np.ndarray:
 
 
 def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
-    """Return the velocity (..., d) of a uniform shear flow at positions.
-
-    Without a `rate`, the velocity is 0.
-
-    height : side of the container along the gradient.
+    """Return the velocity (..., d) of a uniform shear flow at positions. Without a `rate`, the velocity is 0.
+    `height`: side of the container along the gradient.
     """
     import numpy as np  # planning a workflow needs the rest of this module, but not this import
 
@@ -61,11 +59,9 @@ def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np
 
 
 def piston_end(scene: Composition, position: float | None = None) -> float:
-    """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
-
-    The result is infinite if the scene has no such piston.
-
-    position : position along the axis of the piston at time 0. Default: the side of the container.
+    """Return the time at which a piston of prescribed speed compresses the particles to closest packing. The
+    result is infinite if the scene has no such piston. `position`: position along the axis of the piston at
+    time 0. Default: the side of the container.
     """
     for number, face in scene.pistons:
         if face.speed is not None:
@@ -79,9 +75,8 @@ def piston_end(scene: Composition, position: float | None = None) -> float:
 
 
 def check_piston_end(scene: Composition, key: str, until: float, position: float | None = None) -> None:
-    """Raise SceneError if a run would end, at `until`, later than `piston_end`.
-
-    `key` names the setting of this end in the message.
+    """Raise SceneError if a run would end, at `until`, later than `piston_end`. `key` names the setting of
+    this end in the message.
     """
     end = piston_end(scene, position)
     if end < until:
@@ -90,18 +85,16 @@ def check_piston_end(scene: Composition, key: str, until: float, position: float
 
 
 def number_density(scene: Composition, face: Open) -> float:
-    """Return the number density of an ideal gas that would be in equilibrium with a reservoir.
-
-    The density is 0 for a vacuum.
+    """Return the number density of an ideal gas that would be in equilibrium with a reservoir. The density is
+    0 for a vacuum.
     """
     return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
 
 
 def attempt_rate(scene: Composition, number: int, face: Open) -> float:
-    """Return the number of particles per time that try to enter through a face.
-
-    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2), where z is the number density of
-    the reservoir as an ideal gas. The argument `number` is the index of the face.
+    """Return the number of particles per time that try to enter through a face. The rate through an open face
+    of area A is z A (k_B T / 2 pi m)^(1/2), where z is the number density of the reservoir as an ideal gas.
+    The argument `number` is the index of the face.
     """
     area = scene.container.volume / scene.container.lengths[number // 2]
     width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
@@ -109,12 +102,10 @@ def attempt_rate(scene: Composition, number: int, face: Open) -> float:
 
 
 def mean_count(scene: Composition) -> float:
-    """Return an upper bound of the mean number of particles between reservoirs.
-
-    The bound is the mean number for an ideal gas at the same activity, or 0 if there is a vacuum behind every
-    open face. Particles that repel each other are fewer than particles of an ideal gas. The pressure in the
-    container is at most the pressure of the strongest reservoir. The gas is at least as hot as the coldest
-    face or wall.
+    """Return an upper bound of the mean number of particles between reservoirs. The bound is the mean number
+    for an ideal gas at the same activity, or 0 if there is a vacuum behind every open face. Particles that
+    repel each other are fewer than particles of an ideal gas. The pressure in the container is at most the
+    pressure of the strongest reservoir. The gas is at least as hot as the coldest face or wall.
     """
     reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
     if not reservoirs:
@@ -124,11 +115,10 @@ def mean_count(scene: Composition) -> float:
 
 
 def capacity(scene: Composition) -> int:
-    """Return the largest number of particles that the program provides for.
-
-    Without open faces this is the number at the start. With reservoirs it is the mean number in equilibrium
-    plus 10 standard deviations; the number of particles of an ideal gas has a Poisson distribution. The
-    result never exceeds the number of particles that fit into the container.
+    """Return the largest number of particles that the program provides for. Without open faces this is the
+    number at the start. With reservoirs it is the mean number in equilibrium plus 10 standard deviations; the
+    number of particles of an ideal gas has a Poisson distribution. The result never exceeds the number of
+    particles that fit into the container.
     """
     mean = mean_count(scene)
     if mean == 0.0:

@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import TypeVar
 
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat
-from gaspart.scene.faces import FACES, GRADIENT, LeesEdwards, Piston, Sticky, Surface, Thermal
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
-from gaspart.scene.restitution import Restitution
+from gaspart.scene.faces import GRADIENT, LeesEdwards, Piston
+from gaspart.scene.restitution import Restitution, Thermostat
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.scene.species import Particle, Species
+from gaspart.scene.surfaces import FACES, Sticky, Surface, Thermal
 from gaspart.scene.walls import Plate, Wall
 
 S = TypeVar("S", bound=Surface)
@@ -47,10 +47,9 @@ class Composition:
 
     @cached_property
     def image_axes(self) -> tuple[bool, ...]:
-        """Flags (d,) of the axes whose periodic images are at fixed distances.
-
-        Such images are displaced by exactly the length of the container. All periodic axes have fixed images,
-        with one exception: in a sheared gas, the images along the gradient move.
+        """Flags (d,) of the axes whose periodic images are at fixed distances. Such images are displaced by
+        exactly the length of the container. All periodic axes have fixed images, with one exception: in a
+        sheared gas, the images along the gradient move.
         """
         sheared = self.shear_rate is not None
         return tuple(
@@ -108,9 +107,8 @@ class Composition:
 
     @cached_property
     def face_temperatures(self) -> frozenset[float]:
-        """Temperatures of all thermal faces and interior walls.
-
-        If the temperature of a face varies, both ends count.
+        """Temperatures of all thermal faces and interior walls. If the temperature of a face varies, both
+        ends count.
         """
         warm = {wall.temperature for wall in self.walls if wall.temperature is not None}
         return frozenset(warm.union(*(face.temperatures for face in self.faces.values())))
@@ -193,9 +191,8 @@ class Composition:
 
     @cached_property
     def vibrates(self) -> bool:
-        """True if a particle may store energy in a vibration.
-
-        Only fixed particles, and particles that stick to a face, can vibrate.
+        """True if a particle may store energy in a vibration. Only fixed particles, and particles that stick
+        to a face, can vibrate.
         """
         return bool(self.faces_of(Sticky)) or any(kind.vibrates for kind in self.kinds)
 
@@ -207,26 +204,7 @@ class Composition:
         return CLOSE_PACKING[self.dimension] if alike else 1.0
 
     def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the range of the coordinates of the centre of a particle.
-
-        Parameters
-        ----------
-        radius : float, [length]
-            Radius of the particle.
-
-        Returns
-        -------
-        lower : tuple of float, shape (d,), [length]
-            Lowest coordinates.
-        upper : tuple of float, shape (d,), [length]
-            Highest coordinates.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).reach(radius=0.5)
-        ((0.5, 0.5), (8.5, 8.5))
-        """
+        """Return the lowest and the highest coordinates (d,) that the centre of a particle can have."""
         lower, upper = [], []
         for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True):
             margin = 0.0 if periodic or self.centres_to_walls else radius

@@ -14,10 +14,11 @@ from functools import cached_property
 from gaspart.errors import SceneError
 from gaspart.scene.boundaries import capacity
 from gaspart.scene.composition import Composition
-from gaspart.scene.faces import Open, Piston, Thermal, Vibrating
+from gaspart.scene.faces import Open, Piston, Vibrating
 from gaspart.scene.features import FEATURES
 from gaspart.scene.gas import Gas, Mixture, mixture_of
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
+from gaspart.scene.surfaces import Thermal
 from gaspart.scene.walls import MovingWall, moving_wall_among
 
 _CONTACT = 0.01
@@ -41,10 +42,9 @@ class Facts(Composition):
 
     @cached_property
     def gas(self) -> Gas | None:
-        """Plain gas equivalent to the scene, at the temperature of the initial velocities.
-
-        The property has no value (None) if the scene is empty, has particles of several sizes or masses, or
-        has any feature except `centres_to_walls`.
+        """Plain gas equivalent to the scene, at the temperature of the initial velocities. The property has
+        no value (None) if the scene is empty, has particles of several sizes or masses, or has any feature
+        except `centres_to_walls`.
         """
         kinds = [kind for kind in self.kinds if kind.count]
         if not kinds or not self.alike or self.features - {"centres_to_walls"}:
@@ -58,10 +58,8 @@ class Facts(Composition):
 
     @cached_property
     def mixture(self) -> Mixture | None:
-        """Mixture of plain gases that is equivalent to the scene.
-
-        The property has no value (None) if the scene is empty, or has any feature except `polydispersity` and
-        `centres_to_walls`.
+        """Mixture of plain gases that is equivalent to the scene. The property has no value (None) if the
+        scene is empty, or has any feature except `polydispersity` and `centres_to_walls`.
         """
         if self.features - {"polydispersity", "centres_to_walls"}:
             return None
@@ -69,10 +67,9 @@ class Facts(Composition):
 
     @cached_property
     def contact_duration(self) -> float:
-        """Time after a contact of a particle during which its further contacts are elastic.
-
-        The time is 0 if all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01
-        sqrt(d/g), where d is the smallest diameter.
+        """Time after a contact of a particle during which its further contacts are elastic. The time is 0 if
+        all contacts dissipate energy (`Restitution`). Under gravity g the default is 0.01 sqrt(d/g), where d
+        is the smallest diameter.
         """
         law = self.restitution
         if law is None or not law.dissipative:
@@ -132,10 +129,9 @@ class Facts(Composition):
 
     @cached_property
     def drags_faces(self) -> bool:
-        """True if runs tally the momentum that particles transfer parallel to faces.
-
-        This momentum is tallied for faces that give particles random tangential velocities. The condition is
-        that one of these faces slides, or that a force drives the gas along them.
+        """True if runs tally the momentum that particles transfer parallel to faces. This momentum is tallied
+        for faces that give particles random tangential velocities. The condition is that one of these faces
+        slides, or that a force drives the gas along them.
         """
         rubs = any(not face.smooth for face in self.faces.values())
         return bool(self.sliding_faces) or (rubs and bool(self.driven_axes))
@@ -151,9 +147,8 @@ class Facts(Composition):
 
     @cached_property
     def has_equilibrium(self) -> bool:
-        """True if the gas tends to a state at one temperature in which nothing flows.
-
-        Nothing moves or drives the gas, contacts lose no energy, and all faces and reservoirs are equal.
+        """True if the gas tends to a state at one temperature in which nothing flows. Nothing moves or drives
+        the gas, contacts lose no energy, and all faces and reservoirs are equal.
         """
         moved = self.moving_axes or self.sliding_faces or self.driven_axes or self.shear_rate is not None
         reservoirs = {(face.activity, face.temperature) for _, face in self.faces_of(Open)}
@@ -163,18 +158,16 @@ class Facts(Composition):
 
     @cached_property
     def flow_changes(self) -> bool:
-        """True if the flow of the gas changes with time.
-
-        The flow changes if a face or an interior wall moves along its normal, or if faces are open.
+        """True if the flow of the gas changes with time. The flow changes if a face or an interior wall moves
+        along its normal, or if faces are open.
         """
         return bool(self.moving_axes) or self.is_open
 
     @cached_property
     def flow_axes(self) -> tuple[int, ...]:
-        """Axes along which the velocity of the gas may vary.
-
-        If all of the gas moves with one velocity, there are no such axes. The function `analysis.flow` adds
-        this common velocity, because it depends on the run and not on a key of the scene.
+        """Axes along which the velocity of the gas may vary. If all of the gas moves with one velocity, there
+        are no such axes. The function `analysis.flow` adds this common velocity, because it depends on the
+        run and not on a key of the scene.
         """
         if self.flow_changes:
             return self.moving_axes or self.open_axes
@@ -182,11 +175,9 @@ class Facts(Composition):
         return self.resolved_axes(across) if across or self.driven_axes else ()
 
     def resolved_axes(self, across: tuple[int, ...] = ()) -> tuple[int, ...]:
-        """Return the axes along which a steady flow may vary.
-
-        If there are obstacles, these are all axes. Otherwise they are `across`, the axes of the faces that
-        drive the flow. The default of `across` is all axes with walls, or the first axis if there are no
-        walls.
+        """Return the axes along which a steady flow may vary. If there are obstacles, these are all axes.
+        Otherwise they are `across`, the axes of the faces that drive the flow. The default of `across` is all
+        axes with walls, or the first axis if there are no walls.
         """
         if self.has_obstacles:
             return tuple(range(self.dimension))
@@ -194,9 +185,8 @@ class Facts(Composition):
 
     @cached_property
     def dragged_axes(self) -> tuple[bool, ...]:
-        """Flags (d,) of the axes along which faces across other axes exert forces.
-
-        Such faces draw tangential velocities, or particles are rough.
+        """Flags (d,) of the axes along which faces across other axes exert forces. Such faces draw tangential
+        velocities, or particles are rough.
         """
         drags = {number // 2 for number, face in self.numbered_faces if not face.smooth}
         drags.update(self.walled_axes if self.rough else ())
@@ -204,11 +194,9 @@ class Facts(Composition):
 
     @cached_property
     def conserved_axes(self) -> tuple[bool, ...]:
-        """Flags (d,) of the axes along which the total momentum is conserved.
-
-        Momentum is conserved along the periodic axes if no particle is fixed, if no face exerts forces along
-        itself, and if the only interior wall, if any, is a moving wall. In a sheared gas the momentum is
-        relative to the flow.
+        """Flags (d,) of the axes along which the total momentum is conserved. Momentum is conserved along the
+        periodic axes if no particle is fixed, if no face exerts forces along itself, and if the only interior
+        wall, if any, is a moving wall. In a sheared gas the momentum is relative to the flow.
         """
         free = not (self.has_fixed or (bool(self.walls) and self.moving_wall is None))
         axes = zip(self.container.periodic, self.dragged_axes, strict=True)
@@ -216,9 +204,8 @@ class Facts(Composition):
 
     @cached_property
     def shares_energy_evenly(self) -> bool:
-        """True if the kinetic energy of flight is constant, with equal parts in all directions.
-
-        This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
+        """True if the kinetic energy of flight is constant, with equal parts in all directions. This holds in
+        equilibrium for smooth, elastic particles without a potential or a source of heat.
         """
         return self.features <= _STEADY
 

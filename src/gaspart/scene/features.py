@@ -13,14 +13,13 @@ from typing import Any, NamedTuple
 
 from gaspart.errors import SceneError
 from gaspart.scene.composition import Composition
-from gaspart.scene.faces import FACE_KINDS, FACES
+from gaspart.scene.faces import FACE_KINDS
+from gaspart.scene.surfaces import FACES
 
 
 class Feature(NamedTuple):
-    """Feature of a scene.
-
-    The function value(scene) returns None if the scene does not have the feature.
-    A feature that is a kind of face has a `kind`.
+    """Feature of a scene. The function value(scene) returns None if the scene does not have the feature. A
+    feature that is a kind of face has a `kind`.
     """
 
     meaning: str
@@ -29,10 +28,7 @@ class Feature(NamedTuple):
     kind: str | None = None
 
     def refuse(self, scene: Composition, rule: str) -> SceneError:
-        """Return an error about a scene with this feature.
-
-        The error names the key and the face.
-        """
+        """Return an error about a scene with this feature. The error names the key and the face."""
         faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
         key = f"faces.{next(faces)}" if self.kind else self.key
         return SceneError(key, self.value(scene), rule)
@@ -165,8 +161,7 @@ EXCLUDED: dict[tuple[str, str], str] = {
 
 
 def row_count(scene: Composition) -> int:
-    """Return the number of rows of impulses.
-
-    There is a row for each species, and one for all single particles.
+    """Return the number of rows of impulses. There is a row for each species, and one for all single
+    particles.
     """
     return len(scene.species) + bool(scene.particles)

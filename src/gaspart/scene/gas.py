@@ -53,9 +53,8 @@ class Mixture:
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thin(self, most: int) -> Mixture:
-        """Return a mixture with every k-th size only, so that at most `most` sizes remain.
-
-        This approximation is valid for the sizes of one species.
+        """Return a mixture with every k-th size only, so that at most `most` sizes remain. This approximation
+        is valid for the sizes of one species.
         """
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)

@@ -19,6 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.keys import (
     declare,
     describe,
+    documented,
     field_values,
     flag,
     from_mapping,
@@ -36,17 +37,19 @@ from gaspart.scene.checks import (
     check_features,
     check_open_faces,
     check_packing,
+    check_region,
+    check_room,
     check_walls,
 )
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import Surface, key_of, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import surface_from_dict, surface_to_dict
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import FEATURES
-from gaspart.scene.limits import Nearby, check_region, check_room, rounding
-from gaspart.scene.restitution import Restitution
+from gaspart.scene.restitution import Restitution, Thermostat
+from gaspart.scene.sizes import Nearby, rounding
 from gaspart.scene.species import SHARED, Particle, Species
+from gaspart.scene.surfaces import Surface, key_of
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
@@ -58,6 +61,7 @@ DRAWN = 20_000
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
 
+@documented
 @dataclass(frozen=True)
 class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.
@@ -65,27 +69,9 @@ class Scene(Facts):
     A scene is immutable and is validated when it is created. In all arrays the single `particles` come first,
     in their order, followed by the particles of each of the `species`.
 
-    Parameters
-    ----------
-    container : Container
-        The simulated volume and its boundary conditions.
-    species : sequence of Species, optional
-        Particles that the program places.
-    particles : sequence of Particle, optional
-        Particles at given positions.
-    centres_to_walls : bool, default False
-        Walls stop the centres of particles instead of their surfaces [1]_.
-    gravity : sequence of float, shape (d,), [length/time^2], optional
-        Uniform acceleration. Along a periodic axis it drives a flow.
-    restitution : Restitution, optional
-        Collision law of all contacts. Default: elastic and smooth.
-    walls : sequence of Wall (2D) or Plate (3D), optional
-        Walls inside the container.
-    faces : dict of str to face, optional
-        Kinds of faces of the container by name: "x_low", "x_high", "y_low" ... Default: hard or periodic,
-        according to the `container`.
-    thermostat : Thermostat, optional
-        Random kicks of all particles. Default: none.
+    Units of length and time are free; masses are relative to the reference species; k_B = 1.
+
+    Literature: R. Frederickx and P. Meerts (2010), whose spheres stick out of the container.
 
     Raises
     ------
@@ -96,14 +82,6 @@ class Scene(Facts):
     --------
     Simulation : Simulate a scene in memory.
     run : Simulate a scene and write a trajectory.
-
-    Notes
-    -----
-    Units of length and time are free; masses are relative to the reference species; k_B = 1.
-
-    References
-    ----------
-    .. [1] R. Frederickx and P. Meerts (2010), whose spheres stick out of the container.
 
     Examples
     --------
@@ -133,7 +111,9 @@ class Scene(Facts):
     )
     gravity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declare(vector("(d,) uniform acceleration; along a periodic axis it drives a flow")),
+        metadata=declare(
+            vector("(d,) uniform acceleration; along a periodic axis it drives a flow [length/time^2]")
+        ),
     )
     restitution: Restitution | None = field(
         default=None,
@@ -145,7 +125,13 @@ class Scene(Facts):
     faces: dict[str, Surface] = field(
         default_factory=dict,
         hash=False,
-        metadata=declare(describe(FACES_SCHEMA, "kinds of the container's faces; others are hard")),
+        metadata=declare(
+            describe(
+                FACES_SCHEMA,
+                "kinds of faces by name, `x_low`, `x_high`, `y_low` ...; others are hard or periodic,"
+                " as the container states",
+            )
+        ),
     )
 
     thermostat: Thermostat | None = field(
@@ -192,27 +178,7 @@ class Scene(Facts):
             return
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """Return the key of an interior wall that a particle overlaps, or None.
-
-        Parameters
-        ----------
-        position : tuple of float, shape (d,), [length]
-            Position of the particle.
-        radius : float, [length]
-            Radius of the particle.
-
-        Returns
-        -------
-        str or None
-            The key, such as "walls[0]".
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), walls=[gp.Wall((3.0, 1.0), (3.0, 8.0))])
-        >>> scene.wall_at((3.4, 5.0), radius=0.5)
-        'walls[0]'
-        """
+        """Return the key, such as "walls[0]", of an interior wall that a particle overlaps, or None."""
         shifts = [
             (0.0, -length, length) if periodic else (0.0,)
             for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True)
@@ -230,9 +196,8 @@ class Scene(Facts):
         check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
-        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
-
-        The particle is compared only with `earlier` particles.
+        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle. The
+        particle is compared only with `earlier` particles.
         """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
@@ -255,27 +220,7 @@ class Scene(Facts):
                 raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
 
     def separation(self, a: tuple[float, ...], b: tuple[float, ...]) -> float:
-        """Return the distance between two points; on periodic axes, to the nearest image.
-
-        Parameters
-        ----------
-        a : tuple of float, shape (d,), [length]
-            First point.
-        b : tuple of float, shape (d,), [length]
-            Second point.
-
-        Returns
-        -------
-        float
-            The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> gp.Scene(box).separation((1.0, 1.0), (9.0, 1.0))
-        2.0
-        """
+        """Return the distance between two points (d,); on periodic axes, to the nearest image."""
         square = 0.0
         for x, y, length, periodic in zip(a, b, self.container.lengths, self.container.periodic, strict=True):
             gap = abs(x - y)
@@ -283,95 +228,20 @@ class Scene(Facts):
         return math.sqrt(square)
 
     def with_particles(self, *particles: Particle) -> Scene:
-        """Return a new scene with these particles added.
-
-        Parameters
-        ----------
-        *particles : Particle
-            Particles to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> disc = gp.Particle(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0)
-        >>> gp.Scene(gp.Container((9.0, 9.0))).with_particles(disc).count
-        1
-        """
+        """Return a new scene with these particles added; raise SceneError if it is impossible."""
         return replace(self, particles=(*self.particles, *particles))
 
     def with_species(self, *species: Species) -> Scene:
-        """Return a new scene with these species added.
-
-        Parameters
-        ----------
-        *species : Species
-            Species to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).with_species(gp.Species(count=20, radius=0.2)).count
-        20
-        """
+        """Return a new scene with these species added; raise SceneError if it is impossible."""
         return replace(self, species=(*self.species, *species))
 
     def with_walls(self, *walls: Wall | Plate) -> Scene:
-        """Return a new scene with these interior walls added.
-
-        Parameters
-        ----------
-        *walls : Wall or Plate
-            Walls to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0))).with_walls(gp.Wall((3.0, 1.0), (3.0, 8.0)))
-        >>> len(scene.walls)
-        1
-        """
+        """Return a new scene with these interior walls added; raise SceneError if it is impossible."""
         return replace(self, walls=(*self.walls, *walls))
 
     @property
     def summary(self) -> str:
-        """Summary of the scene in one line: number of particles, container, packing fraction, features.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(count=20, radius=0.2)]).summary
-        '20 discs in 9 x 9, packing fraction 0.031'
-        """
+        """Summary of the scene in one line: number of particles, container, packing fraction, features."""
         kind = {2: "disc", 3: "sphere"}[self.dimension] + ("s" if self.count != 1 else "")
         sides = " x ".join(f"{length:g}" for length in self.container.lengths)
         text = f"{self.count} {kind} in {sides}, packing fraction {self.packing_fraction:.3g}"
@@ -388,19 +258,7 @@ class Scene(Facts):
             return html.escape(f"{self.summary}. {error}")
 
     def to_dict(self) -> dict:
-        """Return the scene as plain lists and mappings, as in a scene file.
-
-        Returns
-        -------
-        dict
-            Keys of the scene with their values.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).to_dict()["container"]
-        {'lengths': [9.0, 9.0], 'boundary': ['wall', 'wall']}
-        """
+        """Return the scene as plain lists and mappings, as in a scene file."""
 
         def plain(value: Any) -> Any:
             if is_dataclass(value):
@@ -506,13 +364,6 @@ class Scene(Facts):
         ------
         SceneError
             If the file cannot be written.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).to_file("empty.yaml")
-        >>> print(open("empty.yaml").read().splitlines()[0])
-        container:
         """
         write_yaml(path, self.to_dict())
 

@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Thermal
 from gaspart.state.state import State
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles

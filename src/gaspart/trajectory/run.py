@@ -66,10 +66,7 @@ _LOOK = 0.05  # seconds between checks of other replicas
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """Options for writing a trajectory; its content does not depend on them.
-
-    A negative time raises SceneError.
-    """
+    """Options for writing a trajectory, which its content does not depend on; none may be negative."""
 
     checkpoint_seconds: float = 30.0
     progress: Progress | None = None
@@ -82,10 +79,7 @@ class WriteOptions:
 
 
 def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
-    """Write the trajectory of a recipe at `path`, and return `path`.
-
-    The exceptions are the same as in `gaspart.run`.
-    """
+    """Write the trajectory of a recipe at `path`, and return `path`; raises as `gaspart.run`."""
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` recognises the format by this suffix
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
@@ -93,10 +87,9 @@ def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
-    """Finish the interrupted run of `path.partial` from its files, and return `path`.
-
-    Raises SceneError if there is nothing to resume, if another version of the program began the run, or if
-    the file at `path` is not a complete trajectory of gaspart.
+    """Finish the interrupted run of `path.partial` from its files, and return `path`. Raises SceneError if
+    there is nothing to resume, if another version of the program began the run, or if the file at `path` is
+    not a complete trajectory of gaspart.
     """
     path = run_path(path)
     partial = partial_path(path)
@@ -120,10 +113,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
 
 
 def begun(partial: Path) -> Recipe:
-    """Return the recipe of an unfinished trajectory.
-
-    Raises SceneError if another version began it.
-    """
+    """Return the recipe of an unfinished trajectory. Raises SceneError if another version began it."""
     recipe = read_recipe(partial)
     if not begun_as(partial, recipe):
         rule = "was begun by another version of gaspart, Python or a package: start it anew"
@@ -132,13 +122,12 @@ def begun(partial: Path) -> Recipe:
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
-    """Continue the complete run at `path` to a longer duration, and return `path`.
-
-    The resulting file has the bytes of an uninterrupted run of the longer duration. The run continues from
-    its final checkpoint, which `keep_checkpoint` stores. Without this checkpoint the run is repeated from its
-    start. If the run has a checkpoint, the extended run has a checkpoint, too. An interrupted extension is
-    continued by this function or by `resume`. Raises SceneError under the same conditions as `longer`, and if
-    another unfinished run is at the path, or if the checkpoint is damaged or belongs to another run.
+    """Continue the complete run at `path` to a longer duration, and return `path`. The resulting file has the
+    bytes of an uninterrupted run of the longer duration. The run continues from its final checkpoint, which
+    `keep_checkpoint` stores. Without this checkpoint the run is repeated from its start. If the run has a
+    checkpoint, the extended run has a checkpoint, too. An interrupted extension is continued by this function
+    or by `resume`. Raises SceneError under the same conditions as `longer`, and if another unfinished run is
+    at the path, or if the checkpoint is damaged or belongs to another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -223,10 +212,7 @@ def _record(
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Return True if the first `frames` frames of a file are undamaged.
-
-    If a frame is damaged, the function raises SceneError, unless `overwrite` is True.
-    """
+    """Return True if the first `frames` are undamaged; SceneError if not, unless `overwrite`."""
     try:
         check_frames(partial, range(frames))
     except SceneError as error:
@@ -256,9 +242,8 @@ class Content(Enum):
 
 
 def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
-    """Return True if a run is complete at `path`; False if it may be begun, continued or extended there.
-
-    Raises SceneError if this would replace a file, unless `overwrite` is True.
+    """Return True if a run is complete at `path`; SceneError if a file would be replaced, unless
+    `overwrite`.
     """
     partial, content = partial_path(path), _content(path, recipe, examiner)
     if content is Content.COMPLETE:
@@ -273,10 +258,7 @@ def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite
 
 
 def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
-    """Return the content of the file at the path of a run.
-
-    Raises SceneError for a file of another kind.
-    """
+    """Return the content of the file at the path of a run. Raises SceneError for a file of another kind."""
     if not may_replace(path, TRAJECTORY, overwrite=True):
         return Content.NOTHING
     if begun_as(path, recipe):
@@ -288,10 +270,7 @@ def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
 
 
 def _partial_content(partial: Path, recipe: Recipe) -> Content:
-    """Return the content of the partial file of a run.
-
-    Raises SceneError for a file of another kind.
-    """
+    """Return the content of the partial file of a run. Raises SceneError for a file of another kind."""
     with suppress(FileNotFoundError):  # another process has just finished it
         if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
             if begun_as(partial, recipe):
@@ -325,10 +304,7 @@ def _difference(path: Path, recipe: Recipe, content: Content) -> str:
 
 
 def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Return True if a trajectory is complete with this number of frames; wait for replicas.
-
-    The accuracy can be tested only when the other replicas have these frames, too.
-    """
+    """Return True if a trajectory is complete with these frames, once other replicas have them too."""
     examine = examination(recipe, path, examiner)
     if frames == recipe.frames or examine is None or not is_examined(frames):
         return frames == recipe.frames
@@ -338,10 +314,7 @@ def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | No
 
 
 def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """Return the function that tests the accuracy in the first frames of a run.
-
-    For a run without required accuracies, None is returned. All replicas of a run are tested together.
-    """
+    """Return the joint test of the accuracy of a run's replicas in their first frames, or None."""
     until = recipe.until
     if until is None:
         return None
@@ -372,10 +345,9 @@ def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examin
 
 
 def longer(path: Path, duration: float) -> Recipe:
-    """Return the recipe of a trajectory with a longer duration.
-
-    Raises SceneError if the file is not an undamaged trajectory of this version of the program. Raises
-    SceneError also if the duration is not longer, or if the recipe rejects it.
+    """Return the recipe of a trajectory with a longer duration. Raises SceneError if the file is not an
+    undamaged trajectory of this version of the program. Raises SceneError also if the duration is not longer,
+    or if the recipe rejects it.
     """
     recipe = read_recipe(path)
     if not begun_as(path, recipe):
@@ -393,10 +365,7 @@ def longer(path: Path, duration: float) -> Recipe:
 
 
 def is_beginning(path: Path, recipe: Recipe) -> bool:
-    """Return True if the file at `path` is the beginning of a requested run.
-
-    In this case the two runs differ only in their duration, and the requested duration is longer.
-    """
+    """Return True if the file at `path` differs from a requested run only by a shorter duration."""
     try:
         stored, revision = read_recipe(path), stored_revision(path)
         with open_verified(path) as (_, _, frames):
@@ -408,12 +377,10 @@ def is_beginning(path: Path, recipe: Recipe) -> bool:
 
 
 def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
-    """Copy the frames and the final state of a shorter run to a longer run.
-
-    The shorter run is at `path`. The frames of the longer run are written to `frames`. If there is no shorter
-    run, or if its final state was not stored, the function returns None and changes nothing. The checkpoint
-    of the shorter run is replaced last, so that the copy can be repeated if it is interrupted. Raises
-    OSError, and SceneError for a damaged file.
+    """Copy the frames and the final state of a shorter run to a longer run. If there is no shorter run, or if
+    its final state was not stored, the function returns None and changes nothing. The checkpoint of the
+    shorter run is replaced last, so that the copy can be repeated if it is interrupted. Raises OSError, and
+    SceneError for a damaged file.
     """
     if not (path.exists() and is_beginning(path, recipe)):
         return None

@@ -63,10 +63,8 @@ _FINER = 2.0**-0.125
 
 
 def varying_axes(scene: Scene) -> tuple[bool, ...]:
-    """Return flags (d,) of the axes along which the gas may vary.
-
-    Between walls it varies across the walls alone, if no unstable layers, clusters or initial regions can
-    change this. Without walls all axes count, because fluctuations vary along all of them.
+    """Return flags (d,) of the axes along which the gas may vary. Between walls it varies across the walls
+    alone, if no unstable layers, clusters or initial regions can change this.
     """
     walled = tuple(not around for around in scene.container.periodic)
     rolls = _falls(scene) and len(scene.face_temperatures) > 1
@@ -149,10 +147,9 @@ class Medium:
 
     @cached_property
     def resolves(self) -> bool:
-        """True if results depend on the width of cells.
-
-        Without flows they do so only in elastic gases of the Boltzmann model, whose stress includes transfers
-        between the partners in a cell. The Enskog model tallies transfers over a diameter.
+        """True if results depend on the width of cells. Without flows they do so only in elastic gases of the
+        Boltzmann model, whose stress includes transfers between the partners in a cell. The Enskog model
+        tallies transfers over a diameter.
         """
         return flows(self.scene) or not (self.dense or _dissipates(self.scene))
 
@@ -191,10 +188,9 @@ class Medium:
         return STRESS_TRANSFER[d] / d**2 * mass * self.gas_rates.frequency * float((widths**2).sum())
 
     def recommended(self, step: float) -> tuple[int, ...]:
-        """Return the recommended number of cells along each axis (d,).
-
-        Across walls between which the gas varies there are `LAYERS` cells, if there are enough particles. The
-        remaining cells are divided among the other axes.
+        """Return the recommended number of cells along each axis (d,). Across walls between which the gas
+        varies there are `LAYERS` cells, if there are enough particles. The remaining cells are divided among
+        the other axes.
         """
         fit, axis = self._fitting(step, {}), falling_axis(self.scene)
         if axis is None and flows(self.scene) and sum(self.varying) == 1:
@@ -224,10 +220,9 @@ class Medium:
 
 
 def _collisions_together(widths: np.ndarray, step: float, dimension: int, gas_rates: Rates) -> float:
-    """Return the number of collisions of a particle while a pair that has collided stays together.
-
-    The pair leaves its cell, or another collision of one of them ends the time. The sum over whole steps
-    replaces the integral over an exponential decay.
+    """Return the number of collisions of a particle while a pair that has collided stays together. The pair
+    leaves its cell, or another collision of one of them ends the time. The sum over whole steps replaces the
+    integral over an exponential decay.
     """
     across = math.sqrt(2.0) * {2: 2.0 / math.pi, 3: 0.5}[dimension] * gas_rates.path
     left = across * float((1.0 / widths).sum()) / _STAY[len(widths)] + 2.0
@@ -257,10 +252,8 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def medium_for(
     engine: DsmcSettings, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0
 ) -> Medium:
-    """Return the gas of a scene for an engine.
-
-    gas_rates : rates at the mean density; default: at the start
-    crowding : density around a particle, averaged over particles, divided by the mean density
+    """Return the gas of a scene for an engine, with `gas_rates` at the mean density (default: at the start)
+    and the relative `crowding` around a particle.
     """
     found = gas_rates or rates(scene, engine.model == "enskog")
     return Medium(engine.model, scene, found.at_density(crowding), crowding * usual_count(scene))
@@ -283,12 +276,7 @@ def cells_for(engine: DsmcSettings, medium: Medium, step: float, crowding: float
 def remarks(
     engine: DsmcSettings, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
 ) -> dict[str, str]:
-    """Return a remark, by setting, about each setting that causes a notable error.
-
-    A remark recommends other values if their error is much smaller.
-
-    when : words that describe the time
-    """
+    """Return a remark, by setting, on notable errors, with better values; `when` describes the time."""
     texts, gas_rates = {}, medium.gas_rates
     error, shorter = medium.errors(cells, step).of("fluxes"), step
     if not engine.adapts_steps and step * gas_rates.frequency > LONGEST:

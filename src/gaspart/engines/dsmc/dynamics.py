@@ -56,11 +56,7 @@ def check_scene(scene: Scene, state: State) -> None:
 
 
 def check_made(counts: np.ndarray, time: float, most: int) -> None:
-    """Raise SimulationError if steps could not be completed.
-
-    counts : see `kernels.dsmc.model`
-    most : maximum number of particles
-    """
+    """Raise SimulationError if steps could not be completed; `most` is the maximum number of particles."""
     from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
     if counts[:, UNFINISHED].any():
@@ -97,7 +93,6 @@ class StressPart(TallyPart):
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the names of their fields in `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -111,7 +106,6 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the name of its field in `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
@@ -122,10 +116,7 @@ PARTS = {"stress": StressPart}
 def tally_parts(
     tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    state : state at time 0
-    """
+    """Return the parts for optional tallies. `state`: state at time 0."""
     return [PARTS[tally.name](tally, scene, state, threads) for tally in tallies]
 
 
@@ -134,9 +125,8 @@ _WHOLE = 2**FINEST
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
-
-    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps. A step may be
+    divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
     time_step : length of a step, prescribed or chosen by the engine
     """
@@ -228,7 +218,6 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError if the particles become too fast for any step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -251,10 +240,7 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for some parts of a step, and return the number of completed parts.
-
-        level : level of the division: the step has 2^level parts
-        """
+        """Run the kernel for some of the 2^level parts of a step, and return the number of completed ones."""
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
         workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))
@@ -264,7 +250,6 @@ class DsmcDynamics(SteppedDynamics):
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
-        """Reset all counters."""
         super().reset_tally()
         self._clock_since = int(self._workspace.clock[0])
 
@@ -287,7 +272,6 @@ class DsmcDynamics(SteppedDynamics):
         return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """Return the counts, including the number of divided steps."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -303,7 +287,6 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the density level and the dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
@@ -322,7 +305,6 @@ class DsmcDynamics(SteppedDynamics):
         return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Put the particles into cells for the density level of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)

@@ -23,12 +23,17 @@ class DsmcSettings(Engine):
 
     time_step: float | None = field(
         default=None,
-        metadata=declare(positive("duration of a step; by default a fifth of a mean free time, at most")),
+        metadata=declare(
+            positive("duration of a step [time]; by default a fifth of a mean free time, at most")
+        ),
     )
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declare(
-            per_side("number of cells, or one for each axis; by default those with the smallest error")
+            per_side(
+                "number of cells, or one for each axis; by default those with the smallest error, a "
+                "single one along periodic axes on which the gas does not vary"
+            )
         ),
     )
     model: str = field(
@@ -59,7 +64,6 @@ class DsmcSettings(Engine):
 
     @property
     def equation(self) -> str:
-        """Kinetic equation of the model."""
         return self.model
 
     @property
@@ -74,11 +78,9 @@ class DsmcSettings(Engine):
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step; None if it is not yet known."""
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features that the engine, or its collision model, does not support."""
         super().check_features(scene)
         if self.model == "enskog":
             refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")
@@ -88,10 +90,8 @@ class DsmcSettings(Engine):
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> Self:
-        """Return a copy with these settings changed.
-
-        adapts : True if steps and cells are adapted; `adapt` is set only if this does not follow from the
-            other settings
+        """Return a copy with these settings changed. `adapts`: True if steps and cells are adapted; `adapt`
+        is set only if this does not follow from the other settings.
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):

@@ -31,11 +31,7 @@ def tally_parts(
     scene: Scene,
     state: State,
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    flights : (N,), flights of the particles
-    state : initial state
-    """
+    """Return the parts for optional tallies, from `flights` (N,) of the particles and the initial state."""
     return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in tallies]
 
 
@@ -49,10 +45,7 @@ class EventTally:
         self.lost = np.zeros(2)
 
     def reset(self, time: float, clock: float) -> None:
-        """Reset the counters at a time, after the energies removed so far are stored.
-
-        clock : this time on the clocks of the epoch
-        """
+        """Reset the counters at a time `clock` of the epoch, after energies removed so far are stored."""
         self.lost = np.array([self.dissipated, self.exchanged])
         self.begin(time, clock)
 
@@ -118,12 +111,10 @@ QUIET = 64
 
 
 class Epochs:
-    """Epoch lengths of a scene.
-
-    The length follows from a time of flight, over many of the smallest diameters. If particles are so small
-    that a flight through the container would take many epochs, it is the time of this flight, in which clocks
-    are as precise as positions. The speed is the rms speed plus the largest gain of speed due to gravity and
-    faces.
+    """Epoch lengths of a scene. The length follows from a time of flight, over many of the smallest
+    diameters. If particles are so small that a flight through the container would take many epochs, it is the
+    time of this flight, in which clocks are as precise as positions. The speed is the rms speed plus the
+    largest gain of speed due to gravity and faces.
 
     masses : (N,), masses, infinite for fixed particles
     gained : square of the largest speed that the scene can give a particle
@@ -143,12 +134,9 @@ class Epochs:
         return math.sqrt(square + self._gained)
 
     def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
-        """Return the rms speed after equipartition of the energy.
-
-        The present rms speed would be too low: in a gas at rest, a few heavy or spinning particles can
-        transfer their energy to all others within an epoch.
-
-        stored : energy of the particles in other forms than translation
+        """Return the rms speed after equipartition of the energy. The present rms speed would be too low: in
+        a gas at rest, a few heavy or spinning particles can transfer their energy to all others within an
+        epoch. `stored`: energy of the particles in other forms than translation.
         """
         if not len(self._masses):
             return 0.0
@@ -157,17 +145,14 @@ class Epochs:
         return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
 
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
-        """Return the epoch length for velocities (N, d) and a `stored` energy.
-
-        The stored energy is added to the translational energy. The length `present` is retained under the
-        condition in `length`.
+        """Return the epoch length for velocities (N, d) and a `stored` energy. The length `present` is
+        retained under the condition in `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
         """Return the number of flights through the container in an epoch at the mean relative speed.
-
         Velocities (N, d) are relative to the motion of the whole gas, because particles that move together do
         not collide. The result is 0 if the relative velocities are due to rounding only.
         """
@@ -175,20 +160,17 @@ class Epochs:
         return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
 
     def length(self, speed: float, present: float = 0.0) -> float:
-        """Return the time after which clocks restart from zero.
-
-        The length is a power of two, so that results scale exactly with the units. The length `present` is
-        retained until speeds have changed by a factor of 2^10. In a cooling gas epochs become longer, because
-        each epoch has the same cost.
+        """Return the time after which clocks restart from zero. The length is a power of two, so that results
+        scale exactly with the units. The length `present` is retained until speeds have changed by a factor
+        of 2^10. In a cooling gas epochs become longer, because each epoch has the same cost.
         """
         length = _power_of_two(self._path / speed) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
 
     def quiet(self, speed: float, length: float, number: int) -> float:
-        """Return the epoch length after a `number` of epochs without an event.
-
-        The length is twice the previous length, but at most a time of flight through the container. Up to
-        this length the clocks are as precise as the positions.
+        """Return the epoch length after a `number` of epochs without an event. The length is twice the
+        previous length, but at most a time of flight through the container. Up to this length the clocks are
+        as precise as the positions.
         """
         most = _power_of_two(self._across / speed) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
@@ -223,13 +205,9 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 
 
 def check_progress(time: float, spent: float, epoch: float) -> None:
-    """Raise SimulationError if `MANY` events span less time than the clocks can resolve.
-
-    The order of such events would depend only on rounding.
-
-    time : present time
-    spent : duration of these events
-    epoch : length of the epoch
+    """Raise SimulationError if `MANY` events span less time than the clocks can resolve. The order of such
+    events would depend only on rounding. `time`: present time. `spent`: duration of these events. `epoch`:
+    length of the epoch.
     """
     if spent < MANY * _RESOLVED * epoch:
         raise SimulationError(
@@ -248,10 +226,7 @@ def check_clocks(start: float, epoch: float) -> None:
 
 
 def check_events(time: float, quiet: int, flights: float) -> None:
-    """Raise SimulationError after too many consecutive `quiet` epochs without an event.
-
-    flights : number of flights through the container per epoch, see `Epochs.flights`
-    """
+    """Raise SimulationError after too many `quiet` epochs, of `flights` through the container each."""
     if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
         return
     cause = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
@@ -285,10 +260,7 @@ class CollapsePart(Part):
         return model
 
     def error(self, time: float) -> SimulationError:
-        """Return the error for a scene in which a particle has had too many contacts.
-
-        time : present time
-        """
+        """Return the error for a scene in which a particle has had too many contacts up to `time`."""
         watch = self.watch
         assert watch is not None  # otherwise the kernels would have counted none
         return SimulationError(

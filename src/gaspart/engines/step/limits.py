@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.state.state import State
 from gaspart.theory.discretisation import HIGHEST, MISSED_CONTACTS, ONE_PASS, contact_values
 
@@ -70,10 +70,7 @@ a slit of 1.5 diameters: 0.49).
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """Return a mask (N,) of the particles that are too large for boxes and cells.
-
-    There are only a few such particles, and they are much larger than all other particles.
-    """
+    """Return a mask (N,) of the few particles that are much larger than all others."""
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
     oversized = np.zeros(state.count, dtype=bool)
@@ -99,12 +96,10 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
 
 
 def check_precision(engine: StepSettings, scene: Scene, state: State) -> None:
-    """Raise SceneError if the floating-point precision does not resolve steps or sizes.
-
-    A step is rejected if particles move by less than the rounding error of their positions, or so far that
-    the rounding error is as large as the container. In float32, lengths and speeds are rejected if their
-    squares are out of range. Particles are rejected if the precision cannot resolve their contacts in the
-    container.
+    """Raise SceneError if the floating-point precision does not resolve steps or sizes. A step is rejected if
+    particles move by less than the rounding error of their positions, or so far that the rounding error is as
+    large as the container. In float32, lengths and speeds are rejected if their squares are out of range.
+    Particles are rejected if the precision cannot resolve their contacts in the container.
     """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
@@ -144,19 +139,17 @@ def _kinds_of(state: State) -> Kinds:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """Return the fraction of contacts that are missed because they begin and end within a step.
-
-    The fraction is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each
-    species. It depends on whether there are several passes. The result is the mean over all pairs of species,
-    weighted by their collision rates.
+    """Return the fraction of contacts that are missed because they begin and end within a step. The fraction
+    is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each species. It depends
+    on whether there are several passes. The result is the mean over all pairs of species, weighted by their
+    collision rates.
     """
     return _missed_fraction(time_step, several, state.dimension, _kinds_of(state))
 
 
 def bias(engine: StepSettings, scene: Scene, kind: str) -> float:
-    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order.
-
-    The bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
+    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order. The
+    bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
     Transfers to walls ("walls", "fluxes") have the additional error `at_walls`.
     """
     gas, d, volume = _kinds_in(scene), scene.dimension, scene.container.volume
@@ -188,10 +181,9 @@ def wall_density_error(engine: StepSettings, scene: Scene) -> float:
 
 
 def at_walls(scene: Scene) -> float:
-    """Return the error of transfers to walls, divided by the contacts of a particle in a step.
-
-    Far from walls, momentum is balanced for any order of contacts. So the error is proportional to the
-    fraction of the particles within a radius of a wall.
+    """Return the error of transfers to walls, divided by the contacts of a particle in a step. Far from
+    walls, momentum is balanced for any order of contacts. So the error is proportional to the fraction of the
+    particles within a radius of a wall.
     """
     radius = scene.largest_moving_radius
     lower, upper = (np.array(ends) for ends in scene.reach(radius))
@@ -222,10 +214,7 @@ def _missed_fraction(time_step: float, several: bool, dimension: int, gas: Kinds
 
 
 def check_step(engine: StepSettings, state: State) -> None:
-    """Raise SceneError if the step causes large errors; warn of errors of a few percent.
-
-    The message recommends a sufficiently short step.
-    """
+    """Raise SceneError if the step causes large errors, with a better one; warn of a few percent."""
     if state.count < 2:
         return
     several = engine.passes > 1
@@ -245,10 +234,9 @@ def check_step(engine: StepSettings, state: State) -> None:
 
 
 def check_late(engine: StepSettings, time: float, met: int, late: int, passed: int) -> None:
-    """Raise SimulationError if too many contacts are found a step too late.
-
-    SimulationError is also raised if particles pass through each other. In both cases the step is too long,
-    because speeds are high or gaps are narrow.
+    """Raise SimulationError if too many contacts are found a step too late. SimulationError is also raised if
+    particles pass through each other. In both cases the step is too long, because speeds are high or gaps are
+    narrow.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
@@ -270,11 +258,7 @@ def _packing_fraction(dimension: int, gas: Kinds, volume: float) -> float:
 
 
 def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> float:
-    """Return the mean number of collisions of a particle in a step.
-
-    The number is the step times the collision rate of particles of one size at the same packing fraction,
-    see `_contact_value`.
-    """
+    """Return the mean collisions of a particle in a step, as for one size at the same packing fraction."""
     count = gas.number.sum()
     if count < 2.0:
         return 0.0
@@ -286,10 +270,9 @@ def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> fl
 
 
 def _contact_value(eta: float, dimension: int) -> float:
-    """Return the larger contact value of the fluid and of a crystal, for particles of one size.
-
-    The fluid's is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for discs. Above close
-    packing, which needs several sizes or faces that stop centres, it is the fluid's at its highest.
+    """Return the larger contact value of the fluid and of a crystal, for particles of one size. The fluid's
+    is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for discs. Above close packing,
+    which needs several sizes or faces that stop centres, it is the fluid's at its highest.
     """
     ball = ball_volume(dimension, 0.5)
     fluid = float(contact_values(np.array([min(eta, HIGHEST) / ball]), np.array([0.5]), dimension)[0, 0])

@@ -32,10 +32,9 @@ _REST = 2.0**-20
 
 @inner_helper
 def time_to_face(y, u, a):
-    """Return the time until a particle reaches a face, and its speed there.
-
-    The height y over the face, the speed u and the acceleration a are directed inwards. The time is the root
-    of y + u t + a t^2/2 in the form without cancellation; inf if the particle never reaches the face.
+    """Return the time until a particle reaches a face, and its speed there. The height y over the face, the
+    speed u and the acceleration a are directed inwards. The time is the root of y + u t + a t^2/2 in the form
+    without cancellation; inf if the particle never reaches the face.
     """
     y = max(y, 0.0)
     square = u * u - 2.0 * y * a
@@ -62,11 +61,9 @@ def along(axis, upper, flights, radius, space, gravity):
 
 @inner_helper
 def next_face(flights, radius, space, gravity, resting):
-    """Return the next face that a particle reaches: (time from now, face, speed towards it).
-
-    Without such a face, the time is infinite and the face equals NONE.
-
-    resting : bits of the axes along which the particle rests
+    """Return the next face that a particle reaches: (time from now, face, speed towards it). Without such a
+    face, the time is infinite and the face equals NONE. `resting`: bits of the axes along which the particle
+    rests.
     """
     first, face, speed = inf, NONE, 0.0
     for k in range(len(space.lengths)):
@@ -109,12 +106,9 @@ def put_at_face(face, speed, flights, radius, space):
 
 @inner_kernel
 def draw_spin(i, level, inertia, key, counter, spins):
-    """Draw the spin of a particle; return the energy given to the face.
-
-    i : number of the particle
-    level : temperature
-    counter : number of components of the spin, number of the draw, and first block of random words for the
-        draw
+    """Draw the spin of a particle; return the energy given to the face. `i`: number of the particle. `level`:
+    temperature. `counter`: number of components of the spin, number of the draw, and first block of random
+    words for the draw.
     """
     components, number, block = counter
     width, energy = sqrt(level / inertia), 0.0
@@ -128,9 +122,8 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
 @inner_helper
 def add_shear(face, mass, context, shear):
-    """Add the momentum of a particle along a face to the momentum given to the face.
-
-    mass : negative if the particle receives the momentum
+    """Add the momentum of a particle along a face to the momentum given to the face. `mass`: negative if the
+    particle receives the momentum.
     """
     if shear is not None:
         workspace, part = context.workspace, context.part
@@ -160,9 +153,8 @@ def press(face, which, impulse, context):
 
 @inner_helper
 def warm(face, which, heat, shear, context):
-    """Count the energy and the tangential momentum (3,) that a particle gives to a thermal face.
-
-    which : kind of the particle
+    """Count the energy and the tangential momentum (3,) that a particle gives to a thermal face. `which`:
+    kind of the particle.
     """
     workspace, part = context.workspace, context.part
     add_exact(workspace.wall_heat[part, face], heat)
@@ -176,22 +168,16 @@ def warm(face, which, heat, shear, context):
 
 @inner_helper
 def momentum_of(mass, flights):
-    """Return the momentum (3,) of the particle in a thread's workspace.
-
-    The third component is 0 in two dimensions.
-    """
+    """Return the momentum (3,) of the particle in a thread's workspace; in 2D the third component is 0."""
     velocity = flights[0].velocity
     return mass * velocity[0], mass * velocity[1], mass * velocity[2] if len(velocity) == 3 else 0.0
 
 
 @inner_kernel
 def leave_thermal(i, face, which, number, context, faces, law):
-    """Give a particle at a thermal face the velocity with which it leaves.
-
-    The velocity is random; see `obstacles.thermal`.
-
-    i, which : number and kind of the particle
-    number : number of the draw for this particle
+    """Give a particle at a thermal face the velocity with which it leaves. The velocity is random; see
+    `obstacles.thermal`. `i` and `which`: number and kind of the particle. `number`: number of the draw for
+    this particle.
     """
     part, workspace, key = context.part, context.workspace, context.workspace.wall_key
     flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
@@ -229,9 +215,8 @@ def leave_thermal(i, face, which, number, context, faces, law):
 
 @inner_kernel
 def bounce(i, face, which, context, law):
-    """Reflect the particle in a thread's workspace at a hard face.
-
-    i, which : number and kind of the particle
+    """Reflect the particle in a thread's workspace at a hard face. `i` and `which`: number and kind of the
+    particle.
     """
     axis, side = face // 2, 1.0 if face % 2 else -1.0
     flights = context.workspace.flights[context.part]
@@ -252,9 +237,8 @@ def bounce(i, face, which, context, law):
 
 @inner_helper
 def bounce_often(face, times, speed, which, context):
-    """Count a number of elastic bounces of a smooth particle at a face, at one speed.
-
-    which : kind of the particle
+    """Count a number of elastic bounces of a smooth particle at a face, at one speed. `which`: kind of the
+    particle.
     """
     workspace = context.workspace
     workspace.wall_hits[context.part, face] += np.int64(times)
@@ -263,10 +247,8 @@ def bounce_often(face, times, speed, which, context):
 
 @inner_helper
 def lean(face, which, duration, context, gravity):
-    """Put a particle to rest at a face for some time; the face carries its weight.
-
-    duration : duration of the rest
-    which : kind of the particle
+    """Put a particle to rest at a face for some time; the face carries its weight. `duration`: duration of
+    the rest. `which`: kind of the particle.
     """
     axis = face // 2
     context.workspace.flights[context.part, 0].velocity[axis] = 0.0
@@ -275,10 +257,8 @@ def lean(face, which, duration, context, gravity):
 
 @inner_kernel
 def finish_axis(axis, remaining, which, context, gravity):
-    """Move a smooth elastic particle along one axis for some time, with all its bounces.
-
-    The axes are independent. Between the first and the last bounces, whole periods of the motion are
-    performed at once.
+    """Move a smooth elastic particle along one axis for some time, with all its bounces. The axes are
+    independent. Between the first and the last bounces, whole periods of the motion are performed at once.
     """
     space, workspace = context.space, context.workspace
     flights, radius = workspace.flights[context.part], workspace.radius[which]
@@ -328,10 +308,8 @@ def finish_axes(remaining, which, context, gravity, resting):
 
 @inner_helper
 def comes_to_rest(face, speed, remaining, which, context, gravity, law):
-    """Return True if a particle rests at a hard face; count its loss and weight.
-
-    A particle that hits a face rests there if its bounces are too short, because later bounces would be even
-    shorter.
+    """Return True if a particle rests at a hard face; count its loss and weight. A particle that hits a face
+    rests there if its bounces are too short, because later bounces would be even shorter.
     """
     workspace, axis = context.workspace, face // 2
     pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
@@ -349,10 +327,7 @@ def comes_to_rest(face, speed, remaining, which, context, gravity, law):
 
 @inner_kernel
 def leave_open(i, face, which, context, present):
-    """Remove a particle, and count the energy and momentum that it carries through the face.
-
-    Its slot remains at rest at the middle of the container.
-    """
+    """Remove a particle, and count the energy and momentum that it carries through the face."""
     if present is None:
         return
     workspace, part = context.workspace, context.part
@@ -368,10 +343,8 @@ def leave_open(i, face, which, context, present):
 
 @inner_kernel
 def fly_among_faces(i, which, remaining, context, gravity, faces, law):
-    """Move the particle in the workspace to the end of a step, with all its hits.
-
-    i, which : number and kind of the particle
-    remaining : time until the end of the step
+    """Move the particle in the workspace to the end of a step, with all its hits. `i` and `which`: number and
+    kind of the particle. `remaining`: time until the end of the step.
     """
     space, workspace, part = context.space, context.workspace, context.part
     flights, radius = workspace.flights[part], workspace.radius[which]

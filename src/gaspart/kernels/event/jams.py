@@ -50,11 +50,10 @@ def _lies(flights, i, space, gravity):
 
 @kernel
 def find_resting(flights, before, time, most, model, marks):
-    """Mark (3, N) particles that touch others, particles that move, and particles at rest.
-
-    A particle touches others if it has lasting contacts. A particle moves if it is farther than `most` from
-    its position in `before` (N, d), which is then updated. A particle is at rest if it does not move, and
-    either touches others or lies on a wall.
+    """Mark (3, N) particles that touch others, particles that move, and particles at rest. A particle touches
+    others if it has lasting contacts. A particle moves if it is farther than `most` from its position in
+    `before` (N, d), which is then updated. A particle is at rest if it does not move, and either touches
+    others or lies on a wall.
     """
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
@@ -117,9 +116,8 @@ def gap_between(flights, positions, i, j, space):
 
 @kernel
 def join(flights, order, positions, axis, reach, space, parent):
-    """Join particles with gaps of at most `reach` into trees; `parent` (N,) are the parents.
-
-    order : (M,), these particles, sorted by their coordinate along a nonperiodic axis
+    """Join particles with gaps of at most `reach` into trees; `parent` (N,) are the parents. `order`: (M,),
+    these particles, sorted by their coordinate along a nonperiodic axis.
     """
     largest = 0.0
     for i in order:
@@ -138,12 +136,9 @@ def join(flights, order, positions, axis, reach, space, parent):
 
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
-    """Fix the particles of each tree in which all particles rest and some touch others.
-
-    Returns True if there are any such trees.
-
-    order : particles
-    marks : (3, N), see `find_resting`; overwritten with marks of the trees
+    """Fix the particles of each tree in which all particles rest and some touch others. Returns True if there
+    are any such trees. `order`: particles. `marks`: (3, N), see `find_resting`; overwritten with marks of the
+    trees.
     """
     touches, rests = marks[TOUCHES], marks[RESTS]
     island, any_held = model.law.duration.island, False
@@ -211,9 +206,8 @@ def free(i, gravity, law):
 
 @inner_helper
 def free_if_moved(i, j, rr, rv, gravity, law):
-    """Free particles of a jam among two colliding particles, if their contact can move them.
-
-    rr, rv : products of their separation and relative velocity
+    """Free particles of a jam among two colliding particles, if their contact can move them. `rr` and `rv`:
+    products of their separation and relative velocity.
     """
     if gravity is not None:
         if law is not None:
@@ -236,10 +230,7 @@ def _free_if_moved(i, j, rr, rv, gravity, law, duration):
 
 @inner_helper
 def pressed_particle(flights, i, j, law):
-    """Return the particle that is pressed by the jam of the other particle, or NONE.
-
-    The two particles have been advanced to their contact.
-    """
+    """Return the particle, both at their contact, that the other one's jam presses, or NONE."""
     if law is not None:
         return _pressed_particle(flights, i, j, law, law.duration)
     return NONE
@@ -327,10 +318,8 @@ def _add_walls(flights, positions, i, space, limits, walls):
 
 @inner_kernel
 def _is_stable(flights, n, largest, line, limits, model, stays):
-    """Return True if the fixed supports leave little of every acceleration of a particle.
-
-    n : index of the particle in the line
-    largest : largest radius
+    """Return True if the fixed supports leave little of every acceleration of a particle. `n`: index of the
+    particle in the line. `largest`: largest radius.
     """
     order, positions, axis = line
     i, support = order[n], limits.support
@@ -353,10 +342,8 @@ def _is_stable(flights, n, largest, line, limits, model, stays):
 
 @kernel
 def keep_stable(flights, line, limits, model, marks):
-    """Remove the mark HELD of particles in a line that are not supported in their positions.
-
-    Supports are the other marked particles, fixed particles and walls. The search is repeated until no mark
-    changes.
+    """Remove the mark HELD of particles in a line that are not supported in their positions. Supports are the
+    other marked particles, fixed particles and walls. The search is repeated until no mark changes.
     """
     stays, held, largest, changed = marks[STAYS], marks[HELD], 0.0, True
     for i in line.order:
@@ -384,10 +371,7 @@ def free_unstable(flights, time, marks, model):
 
 @kernel
 def jam(flights, order, time, marks, parent, model, tally):
-    """Fix the particles (M,) of each tree that has a pressed or already fixed particle.
-
-    Returns True if there are any new ones.
-    """
+    """Fix the particles (M,) of trees with a pressed or fixed particle; return True if any are new."""
     pressed, duration, any_new = marks[PRESSED], model.law.duration, False
     for i in order:
         pressed[root_of(parent, i)] |= pressed[i] or is_jammed(duration, i)

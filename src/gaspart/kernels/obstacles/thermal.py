@@ -28,11 +28,8 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def mirrors(i, face, number, key, accommodation):
-    """Return True if a face reflects a particle specularly at this hit (Maxwell's model).
-
-    The decision uses a random word of block 0; `flux_speed` uses another word of this block.
-
-    number : number of the hit
+    """Return True if a face reflects a particle specularly at this hit (Maxwell's model). The decision uses a
+    random word of block 0; `flux_speed` uses another word of this block. `number`: number of the hit.
     """
     if accommodation is None:
         return False
@@ -94,9 +91,8 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def add_shear(flights, i, face, mass, sliding):
-    """Add the momentum of a particle along a face to the momentum given to the face.
-
-    mass : negative if the particle receives the momentum
+    """Add the momentum of a particle along a face to the momentum given to the face. `mass`: negative if the
+    particle receives the momentum.
     """
     if sliding is not None:
         d = sliding.velocity.shape[1]
@@ -116,11 +112,8 @@ def drag(flights, i, face, mass, sliding):
 
 @inner_kernel
 def draw_spin(i, wall, level, key, counter, dimension, tally, law):
-    """Draw the spin of a rough particle; in two dimensions it has one component.
-
-    wall : row of the tally
-    level : temperature
-    counter : number of the draw, and first block of random words for the draw
+    """Draw the spin of a rough particle; in two dimensions it has one component. `wall`: row of the tally.
+    `level`: temperature. `counter`: number of the draw, and first block of random words for the draw.
     """
     if law is None:
         return
@@ -141,11 +134,9 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
 
 @inner_helper
 def leave_warm(flights, i, wall, normal, model, tally, law, warm):
-    """Give a particle the velocity with which it leaves an interior wall with a temperature.
-
-    Returns the momentum given to the wall along the normal, or -1 if the wall is hard.
-
-    normal : (3,), unit vector towards the wall
+    """Give a particle the velocity with which it leaves an interior wall with a temperature. Returns the
+    momentum given to the wall along the normal, or -1 if the wall is hard. `normal`: (3,), unit vector
+    towards the wall.
     """
     if warm is None:
         return -1.0
@@ -179,9 +170,8 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
 
 @inner_helper
 def tangents(normal, dimension):
-    """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,).
-
-    In two dimensions the first vector is in the plane.
+    """Return two orthogonal unit vectors (3,) across a unit vector `normal` (3,); in 2D the first is in the
+    plane.
     """
     x, y, z = normal
     if dimension == 2:
@@ -235,10 +225,7 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def is_held(flights, i, axis, masses, law, faces, sticky):
-    """Return True if a particle sticks to a face across an axis.
-
-    Then the face absorbs its velocity along this axis.
-    """
+    """Return True if a particle sticks to a face across an axis, which absorbs its velocity."""
     side = faces.well_side[i, axis]
     face = 2 * axis + (1 if side > 0 else 0)
     if side == 0 or not sticky[face]:
@@ -258,10 +245,9 @@ def mobility_of(i, masses, law):
 
 @inner_helper
 def lose_rounding(flights, i, axis, least, space, sticky):
-    """Remove a velocity of at most `least` with which a particle would hit its sticky face.
-
-    Such a velocity is a rounding error that remains if the particle has transferred its whole velocity to
-    another particle; it must not cause a hit.
+    """Remove a velocity of at most `least` with which a particle would hit its sticky face. Such a velocity
+    is a rounding error that remains if the particle has transferred its whole velocity to another particle;
+    it must not cause a hit.
     """
     v = flights[i].velocity[axis]
     upper = v > 0.0
@@ -306,10 +292,8 @@ def _part_if_held(flights, i, j, model, faces, sticky):
 
 @inner_helper
 def part_if_held(flights, i, j, model, faces):
-    """Separate two particles that have collided if one of them sticks to a face.
-
-    If they would collide again, they get a separation speed of the order of rounding errors. Such a speed
-    must not lead towards a face.
+    """Separate two particles that have collided if one of them sticks to a face. If they would collide again,
+    they get a separation speed of the order of rounding errors. Such a speed must not lead towards a face.
     """
     if faces is not None:
         _part_if_held(flights, i, j, model, faces, faces.sticky)
@@ -328,10 +312,8 @@ def edge_plane(flights, i, face, space, faces):
 
 @inner_kernel
 def time_to_edge(flights, i, axis, space, faces):
-    """Return the next edge of a well along an axis: (time, face code).
-
-    For a particle stuck to a face, the result is its clock time and the face. The particle is tested again,
-    because a contact has moved it.
+    """Return the next edge of a well along an axis: (time, face code). For a particle stuck to a face, the
+    result is its clock time and the face. The particle is tested again, because a contact has moved it.
     """
     v = flights[i].velocity[axis]
     clock = flights[i].clock
@@ -348,10 +330,7 @@ def time_to_edge(flights, i, axis, space, faces):
 
 @inner_helper
 def cross_edge(flights, i, face, model, tally, law, faces):
-    """Move a particle into a well, or out of it if it is fast enough.
-
-    The wall receives the momentum change.
-    """
+    """Move a particle into a well, or out of it if fast enough; the wall receives its change of momentum."""
     axis = face // 2
     flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
     side = 1.0 if face % 2 else -1.0
@@ -379,10 +358,7 @@ def collide_edge(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def meet_edge(flights, i, face, time, model, tally, faces):
-    """Advance a particle to the edge of a well, where it crosses or is reflected.
-
-    Returns the number of the face.
-    """
+    """Advance a particle to a well's edge, to cross it or be reflected; return the number of the face."""
     if faces is not None:
         advance(flights, i, time, model.space, model.gravity)
         velocity = velocity_before(flights, i, tally.per_area)

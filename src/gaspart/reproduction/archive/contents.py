@@ -15,12 +15,11 @@ from gaspart.errors import SceneError
 from gaspart.files import resolve_path
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.config import check, is_own, merged_with_default
-from gaspart.reproduction.jobs.simulate import recipes
+from gaspart.reproduction.config import check, is_own, keep_efforts, merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
+from gaspart.reproduction.points.trust import require_own
 from gaspart.reproduction.registry import caption
-from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
 
@@ -30,9 +29,8 @@ def leads_out(name: str) -> bool:
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the distinct normalised paths of the scene files of all experiments in a merged config.
-
-    They are the texts under `scene` in points and grids.
+    """Return the distinct normalised paths of the scene files of all experiments in a merged config. They are
+    the texts under `scene` in points and grids.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -54,10 +52,9 @@ _WHOLE = {"experiments", "figures"}
 
 @dataclass(frozen=True)
 class Finished:
-    """Finished run: merged config, its files, and points of figures and films.
-
-    All paths are relative to `root`, the folder of the workflow. `results` is `results` or `results/<run>`,
-    in the folder of the module's prefix if there is a prefix.
+    """Finished run: merged config, its files, and points of figures and films. All paths are relative to
+    `root`, the folder of the workflow. `results` is `results` or `results/<run>`, in the folder of the
+    module's prefix if there is a prefix.
     """
 
     root: Path
@@ -73,9 +70,8 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """True if `root` is a copy of the project.
-
-        Otherwise `root` has another workflow, which uses this project as a module.
+        """True if `root` is a copy of the project. Otherwise `root` has another workflow, which uses this
+        project as a module.
         """
         return (self.root / "workflow/rules/common.smk").is_file()
 
@@ -111,11 +107,10 @@ class Finished:
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
-    """Find the finished run whose results are in the folder `results` or `results/<run>`.
-
-    By default, `config` is the one config of the project with the name of this run. If another workflow uses
-    this one as a module, the project is that of the other workflow. Raises SceneError if results are missing,
-    or if trajectories were made with settings that differ from the config.
+    """Find the finished run whose results are in the folder `results` or `results/<run>`. By default,
+    `config` is the one config of the project with the name of this run. If another workflow uses this one as
+    a module, the project is that of the other workflow. Raises SceneError if results are missing, or if
+    trajectories were made with settings that differ from the config.
     """
     folder = resolve_path(results)
     if not (folder / "tables/claims.csv").is_file():
@@ -134,6 +129,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
+    keep_efforts(merged, parent / str(merged.get("points")))
     with chdir(root):  # folder from which scene files are read
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
@@ -193,11 +189,7 @@ def _check(run: Finished, file: Path, results: str | Path) -> None:
         rule = f"is not complete: {missing[0]}{others}; run the workflow to its end"
         raise SceneError("results", str(results), rule)
     for point in run.points:
-        if point.job == TRAJECTORIES:
-            for path, recipe in zip(point.replica_paths, recipes(**point.arguments), strict=True):
-                if read_recipe(run.root / path) != recipe:
-                    rule = "was made with other settings than those of the config; run the workflow again"
-                    raise SceneError("trajectory", path, rule)
+        require_own(point)
 
 
 CITATION = "CITATION.cff"
@@ -217,10 +209,8 @@ _OF_PACKAGE = Path(__file__).parents[4]
 
 
 def sources(run: Finished) -> Iterator[str]:
-    """Yield the files of the project with which the run can be repeated.
-
-    If another workflow uses this one as a module, it has some of these files, and CITATION.cff. Raises
-    SceneError if a necessary file is missing.
+    """Yield the files of the project with which the run can be repeated. If another workflow uses this one as
+    a module, it has some of these files, and CITATION.cff. Raises SceneError if a necessary file is missing.
     """
     required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in required:

@@ -32,10 +32,9 @@ def digest_of_file(path: Path) -> str:
 
 
 def digest_of_numbers(path: Path) -> str:
-    """Compute the digest of the names, types, shapes and bytes of a trajectory's variables.
-
-    Equal bits have equal digests, even if the attributes state different versions and git revisions. Raises
-    SceneError for a file that is no trajectory of gaspart.
+    """Compute the digest of the names, types, shapes and bytes of a trajectory's variables. Equal bits have
+    equal digests, even if the attributes state different versions and git revisions. Raises SceneError for a
+    file that is no trajectory of gaspart.
     """
     total = hashlib.sha256()
     with open_netcdf_file(path) as file:
@@ -49,9 +48,8 @@ def digest_of_numbers(path: Path) -> str:
 
 
 def joint_digest(paths: Iterable[str], digests: Mapping[str, str]) -> str:
-    """Compute a joint digest of files, from the lines "<digest>  <path>" in the order of the paths.
-
-    A folder stands for all files of `digests` in it. Raises KeyError for any other path.
+    """Compute a joint digest of files, from the lines "<digest> <path>" in the order of the paths. A folder
+    stands for all files of `digests` in it. Raises KeyError for any other path.
     """
     files: set[str] = set()
     names = sorted(digests)

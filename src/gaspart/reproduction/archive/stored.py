@@ -101,10 +101,8 @@ def _reason(error: BaseException) -> str:
 
 @contextmanager
 def opened_archive(path: str | Path) -> Iterator[Stored]:
-    """Open an archive within the `with` block.
-
-    Raises SceneError for a file that cannot be read or is no archive of gaspart, and for names that lead out
-    of the archive.
+    """Open an archive within the `with` block. Raises SceneError for a file that cannot be read or is no
+    archive of gaspart, and for names that lead out of the archive.
     """
     path = Path(path)
     with ExitStack() as stack:
@@ -137,9 +135,8 @@ def _folder(path: Path) -> Stored:
 
 
 def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
-    """Return `count` random points of an archive that have trajectories, or all if there are fewer.
-
-    The points are planned again from the archive's config and scenes, which are written to `folder`. Raises
+    """Return `count` random points of an archive that have trajectories, or all if there are fewer. The
+    points are planned again from the archive's config and scenes, which are written to `folder`. Raises
     SceneError if the config cannot be planned.
     """
     _write_config(stored, folder)
@@ -152,10 +149,8 @@ def chosen(stored: Stored, folder: Path, count: int) -> list[Point]:
 
 
 def _write_config(stored: Stored, folder: Path) -> None:
-    """Write the config of an archive, and the scene files that it names, to a folder.
-
-    Raises SceneError for a scene file that is not in the archive: the config of a stranger must not read
-    files of this machine.
+    """Write the config of an archive, and the scene files that it names, to a folder. Raises SceneError for a
+    scene file that is not in the archive: the config of a stranger must not read files of this machine.
     """
     config = parse_yaml(stored.text(tables.CONFIG), tables.CONFIG)
     for name in scene_files(config):
@@ -207,11 +202,10 @@ _NAMED = 3
 
 
 def verify(path: str | Path, points: int = 0) -> Iterator[Check]:
-    """Recompute the digests of an archive, and simulate some of its points again.
-
-    The function yields a check for the files, the run, its claims and points, and for each of `points` points
-    with trajectories, drawn at random. If files are damaged, checks that depend on them are left out. Raises
-    SceneError if the file is no archive, or if a simulation raises it.
+    """Recompute the digests of an archive, and simulate some of its points again. The function yields a check
+    for the files, the run, its claims and points, and for each of `points` points with trajectories, drawn at
+    random. If files are damaged, checks that depend on them are left out. Raises SceneError if the file is no
+    archive, or if a simulation raises it.
     """
     with opened_archive(path) as stored:
         stated = stored.manifest()

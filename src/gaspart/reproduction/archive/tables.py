@@ -32,7 +32,6 @@ RUN = f"{FOLDER}/run.json"
 
 class PointFile(NamedTuple):
     """Row of `points.csv`: a file of a point; the fields of trajectories are "" for other points.
-
     `numbers_sha256` is the digest of the numbers without the attributes, and `revision` the git revision at
     which the trajectory was begun.
     """

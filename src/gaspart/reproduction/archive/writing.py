@@ -43,10 +43,9 @@ def write_archive(
     trajectories: bool = False,
     overwrite: bool = False,
 ) -> str:
-    """Write the archive of a finished run, and return a line that describes its contents.
-
-    The arguments are those of `find_finished`; with `trajectories`, they are included. Raises SceneError like
-    `find_finished`, if a file or the package rocrate is missing, or if the path cannot be written.
+    """Write the archive of a finished run, and return a line that describes its contents. The arguments are
+    those of `find_finished`; with `trajectories`, they are included. Raises SceneError like `find_finished`,
+    if a file or the package rocrate is missing, or if the path cannot be written.
     """
     optional("rocrate.rocrate", "archive", "archives")  # fails before the work starts
     if output_path(path).suffix != ".zip":

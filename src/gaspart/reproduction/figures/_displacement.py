@@ -102,10 +102,9 @@ def mean(samples: Sequence[Any]) -> Estimate:
 
 
 def columns(point: Point, state: State, curves: list[Curves]) -> dict[str, Any]:
-    """Return the columns of every point.
-
-    In short runs `integral_difference` is the slope of the twice integrated C over that of the msd / 2d, less
-    1: the first uses only velocities, the second only displacements.
+    """Return the columns of every point. In short runs `integral_difference` is the slope of the twice
+    integrated C over that of the msd / 2d, less 1: the first uses only velocities, the second only
+    displacements.
     """
     time = np.mean([curve.time for curve in curves], axis=0)
     rate, dimension = state.collision_rate, point.settings["dimension"]

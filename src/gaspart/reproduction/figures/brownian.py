@@ -73,9 +73,8 @@ class Sphere:
         return {name: value for name, value in vars(self).items() if name not in ("point", "gas")}
 
     def light_paths(self) -> Iterator[Path]:
-        """Yield groups of paths of the linear Boltzmann equation from rest, sampled like the runs.
-
-        A gas of equal speeds relaxes meanwhile, by its own collisions.
+        """Yield groups of paths of the linear Boltzmann equation from rest, sampled like the runs. A gas of
+        equal speeds relaxes meanwhile, by its own collisions.
         """
         schedule = self.point.schedule
         interval, frames = schedule.sample_interval, schedule.equilibration_frames + schedule.samples
@@ -96,10 +95,9 @@ class Sphere:
             yield time, paths.displacements[:, group], paths.velocities[:, group]
 
     def end_variance(self, duration: float) -> float:
-        """Compute the mean square of a component of the final displacement, from rest.
-
-        A periodic gas drifts with the mean square (1 - share) share k_B T / M along each axis, because the
-        particle's momentum is drawn with the others.
+        """Compute the mean square of a component of the final displacement, from rest. A periodic gas drifts
+        with the mean square (1 - share) share k_B T / M along each axis, because the particle's momentum is
+        drawn with the others.
         """
         if self.is_light:
             return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in self.light_paths()]))
@@ -109,9 +107,8 @@ class Sphere:
         return float(variance + rest * self.share * self.temperature / self.mass * duration**2)
 
     def reduce(self, paths: Iterable[Path], share: float) -> tuple[dict[str, Any], dict[str, Estimate]]:
-        """Return curves in reduced units, and equipartition, friction and diffusion of an infinite gas.
-
-        A periodic gas drifts and absorbs the momentum that the particle loses: with s = `share` and the
+        """Return curves in reduced units, and equipartition, friction and diffusion of an infinite gas. A
+        periodic gas drifts and absorbs the momentum that the particle loses: with s = `share` and the
         friction g, C(t) = (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s). The constant part is
         subtracted; errors are bootstrap errors.
         """

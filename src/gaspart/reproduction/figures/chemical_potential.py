@@ -58,9 +58,8 @@ class MeasuredState:
     fit: Fit
 
     def _estimate(self, reference: float, factors: list[float]) -> Estimate:
-        """Return a quantity of the reference plus the contribution of each coefficient.
-
-        The degrees of freedom of the error are the smallest of the coefficients.
+        """Return a quantity of the reference plus the contribution of each coefficient. The degrees of
+        freedom of the error are the smallest of the coefficients.
         """
         parts = np.array(factors)
         error = np.sqrt(parts @ self.fit.covariance @ parts)
@@ -113,7 +112,6 @@ def _excess(point: Point) -> dict[str, Any]:
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure mu_excess / (k_B T) and ln Q / N at each point of `measured`, by insertion and Gibbs-Duhem.
-
     `inserted` is for the infinite fluid, `expected`, the probability that a place is free by the equation of
     state, for this number of particles. A row `works` with `enough` frames that have a free place; `ln_q` is
     NaN if it does not.
@@ -191,10 +189,9 @@ def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
 
 
 def ln_q(eta: np.ndarray, potential: Estimate, dimension: int) -> Estimate:
-    """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials.
-
-    The reference times a polynomial in eta is fitted to the potentials. Its integral over eta is divided by
-    eta. The degrees of freedom of the errors are the smallest of the coefficients.
+    """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials. The reference
+    times a polynomial in eta is fitted to the potentials. Its integral over eta is divided by eta. The
+    degrees of freedom of the errors are the smallest of the coefficients.
     """
     reference = theory.excess_chemical_potential(eta, dimension)
     fit = fit_polynomial(eta, potential / reference - 1.0, powers=POTENTIAL_POWERS)

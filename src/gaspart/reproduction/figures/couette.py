@@ -99,7 +99,6 @@ def _uniform(point: Point, settings: dict) -> dict[str, Any]:
 
 class Flow:
     """Gas between plates: spheres that occupy no volume if `dilute`, as in DSMC; `middle` are inner bins.
-
     `coarse` is the viscosity with the engine's cells and steps, divided by the exact viscosity.
     """
 
@@ -129,11 +128,9 @@ class Flow:
         return 0.0 if self.dilute else float(theory.packing_fraction(density, 3, self.diameter))
 
     def numbers(self, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
-        """Compute the stress and `NUMBERS`, from averages over a run.
-
-        Across the gap T + b u^2 is constant (`shear.viscous_heating`). The viscosity grows like sqrt(T).
-        Therefore u = g x (1 + c x^2) with c = b g^2 / 6 T, to first order in c; g is the gradient in the
-        middle.
+        """Compute the stress and `NUMBERS`, from averages over a run. Across the gap T + b u^2 is constant
+        (`shear.viscous_heating`). The viscosity grows like sqrt(T). Therefore u = g x (1 + c x^2) with c = b
+        g^2 / 6 T, to first order in c; g is the gradient in the middle.
         """
         density, middle = averages[0], self.middle
         velocity, temperature, energies = _profile(*averages)
@@ -203,7 +200,6 @@ def _measure_flow(point: Point, settings: dict) -> dict[str, Any]:
 
 def _averages(run: Run, gap: Gap, blocks: int, bins: int) -> tuple[np.ndarray, ...]:
     """Average over K blocks of a run: stress and pressure on the walls, then per volume in each of B bins.
-
     These are particles (K, B), momentum along the flow (K, B), and squared velocities (K, B, d). The last
     item (K, 2) is the change of the total momentum, and of the first moment of the momentum.
     """

@@ -82,10 +82,9 @@ def inertia(point: Point) -> float:
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure four groups of points.
-
-    Particles of `walls` hit only rough walls. Points with a tangential restitution below 1 are `cooling`. Of
-    the others, points with an equilibration are in `equilibrium`; points without it `start` without spins.
+    """Measure four groups of points. Particles of `walls` hit only rough walls. Points with a tangential
+    restitution below 1 are `cooling`. Of the others, points with an equilibration are in `equilibrium`;
+    points without it `start` without spins.
     """
     between = [point for point in points if not point.scene.is_periodic]
     points = [point for point in points if point not in between]
@@ -117,7 +116,6 @@ def _start(point: Point) -> dict[str, Any]:
 
 def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
     """Fit the initial decay of ln (T_tr - T_rot) by a parabola in s, until a fifth of the difference is left.
-
     The noise of the difference is nearly the same at all s.
     """
     difference = translation - rotation
@@ -157,11 +155,10 @@ def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
 
 
 def _walls(point: Point) -> dict[str, Any]:
-    """Measure temperatures between two rough walls, over T_par at the start.
-
-    T_par = m <v^2> for each direction along the walls, T_rot = I <w^2> for each of as many components of spin
-    that a hit changes. `exchange` is T_rot over theory, by least squares until MIXING; `wall_ratio`, T_rot /
-    T_par over theory after MIXED.
+    """Measure temperatures between two rough walls, over T_par at the start. T_par = m <v^2> for each
+    direction along the walls, T_rot = I <w^2> for each of as many components of spin that a hit changes.
+    `exchange` is T_rot over theory, by least squares until MIXING; `wall_ratio`, T_rot / T_par over theory
+    after MIXED.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
@@ -228,7 +225,6 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
 
 def _decay(gas: Row) -> Iterator[Claim]:
     """Yield the claims on the initial decay without spins, and on the difference where theory's is largest.
-
     There the assumption of Maxwellian velocities is least accurate.
     """
     q = gas.inertia

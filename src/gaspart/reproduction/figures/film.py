@@ -70,9 +70,8 @@ class Slit:
         return mean_of([fit.values[0] for fit in fits])
 
     def chemical_potential(self, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
-        """Estimate ln[(N + 1) / (V p)] by Widom's insertion, V the volume accessible to centres.
-
-        p is the probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)).
+        """Estimate ln[(N + 1) / (V p)] by Widom's insertion, V the volume accessible to centres. p is the
+        probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)).
         """
         from scipy.spatial import cKDTree
 
@@ -96,7 +95,6 @@ class Slit:
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure pressures of all slits, the profile of the widest, and the same by density functional theory.
-
     `at_bulk` is the pressure at exactly the chemical potential of the bulk, to first order.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])

@@ -50,7 +50,6 @@ COMPARED = 870  # discs with published pressures; such points are compared, and 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure P and psi_6 of discs against packing fraction from both starts, plateau, and structure.
-
     `compared_pressure` is that of `COMPARED` discs, if there are such points. Structure is that of the last
     start.
     """
@@ -72,10 +71,8 @@ def _disc(point: Point) -> dict[str, Any]:
 
 
 def _plateau(side: Row) -> dict[str, Any]:
-    """Compute the plateau of one start.
-
-    The uncertainty of a point includes half of its drift, and half of the difference between the starts,
-    `unlike`. A run out of equilibrium is therefore uncertain.
+    """Compute the plateau of one start. The uncertainty of a point includes half of its drift, and half of
+    the difference between the starts, `unlike`. A run out of equilibrium is therefore uncertain.
     """
     own = Table(side.dataset, "packing_fraction")
     own = own[np.isfinite(own.pressure.value)]
@@ -173,9 +170,8 @@ def _orientation(state: Row, melted: bool) -> Claim:
 
 
 def _liquid(states: Table) -> Iterator[Claim]:
-    """Yield claims on pressures of liquid discs, for the published number in the published container.
-
-    The virial series is too inaccurate here.
+    """Yield claims on pressures of liquid discs, for the published number in the published container. The
+    virial series is too inaccurate here.
     """
     published = theory.literature("pressure", 2)
     references = {row.packing_fraction: row for row in published[published.container == "29 x 30"]}
@@ -209,10 +205,9 @@ def _crystal(states: Table) -> Iterator[Claim]:
 
 
 def _equilibrium(states: Table) -> Claim:
-    """Return the claim on the number of differences that agree with equilibrium.
-
-    The probability is an exact binomial one. A fluid that is compressed beyond the melting point of the
-    ordered phase freezes with defects. They do not heal in any such run.
+    """Return the claim on the number of differences that agree with equilibrium. The probability is an exact
+    binomial one. A fluid that is compressed beyond the melting point of the ordered phase freezes with
+    defects. They do not heal in any such run.
     """
     from scipy.special import bdtrc, ndtri
 

@@ -41,10 +41,9 @@ LOCAL_CRYSTAL = 0.32  # smallest averaged local q_6, half-way between 0.48 (crys
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence.
-
-    Z is that of the infinite system, `reference` that of the equation for the branch of the run, NaN beyond
-    its range. A `slab` holds both phases; its profiles and fraction of crystal are those of both halves.
+    """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence. Z is that of
+    the infinite system, `reference` that of the equation for the branch of the run, NaN beyond its range. A
+    `slab` holds both phases; its profiles and fraction of crystal are those of both halves.
     """
     slabs = [point for point in points if point.settings.get("arrangement") == "slab"]
     dataset = measure_states([point for point in points if point not in slabs], _sphere)

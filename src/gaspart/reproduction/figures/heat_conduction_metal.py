@@ -38,7 +38,6 @@ SETTINGS = {
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure temperatures of electrons and modes, energies over the `expected` heat capacity, and dE/dT.
-
     `regular` is True if scatterers are listed one by one, on a grid, instead of placed at random.
     """
     dataset = table("point", points, measure_metal, settings, inner=("bin",))
@@ -50,10 +49,9 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def measure_metal(point: Point, settings: dict) -> dict[str, Any]:
-    """Measure one point.
-
-    The variance of E is the mean square of the deviation from the known mean of E. Its estimate therefore has
-    no bias, even if samples are correlated. Its logarithm is closer to a Gaussian number.
+    """Measure one point. The variance of E is the mean square of the deviation from the known mean of E. Its
+    estimate therefore has no bias, even if samples are correlated. Its logarithm is closer to a Gaussian
+    number.
     """
     scene = point.scene
     gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
@@ -103,10 +101,9 @@ def measure_metal(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def bend(temperature: np.ndarray) -> float:
-    """Fit the second-order coefficient of the temperature against position in the gap.
-
-    The outermost bins are left out, because electrons come directly from the walls there. The result is NaN
-    for fewer than five bins.
+    """Fit the second-order coefficient of the temperature against position in the gap. The outermost bins are
+    left out, because electrons come directly from the walls there. The result is NaN for fewer than five
+    bins.
     """
     if temperature.size < 5:
         return np.nan

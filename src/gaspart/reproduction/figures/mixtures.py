@@ -29,7 +29,7 @@ from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
 from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 TITLE, CHAPTER = "Mixtures", "Equation of state and structure"
 PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
@@ -37,7 +37,6 @@ PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure Z of the infinite gas and, for two sizes, the virial, contact values and rates of pairs.
-
     Theories stand beside them, such as contact_boublik. A rate counts collisions of a particle of the first
     kind with all of the second.
     """
@@ -81,7 +80,6 @@ def _replica(run: Run, two: bool) -> dict[str, Estimate]:
 
 def _virial(run: Run) -> Estimate:
     """Compute the sum of |dr . dp| over that of Maxwellian velocities for each pair's collisions, minus 1.
-
     The mean of |dr . dp| for colliding particles of reduced mass mu is sigma sqrt(2 pi mu k_B T).
     """
     weights = []

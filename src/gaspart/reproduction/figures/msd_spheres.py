@@ -31,13 +31,12 @@ DILUTE_BAND = 0.007  # relative difference of D from Enskog's; by Erpenbeck and 
 
 
 def spheres(point: Point) -> dict[str, Any]:
-    """Measure D of a point, its correction to an infinite container, and the curves.
-
-    With zero total momentum, D of N particles is smaller by (N - 1) / N, exactly in a dilute gas, where each
-    other particle carries -1 / (N - 1) of a particle's momentum; the curves are divided by this. The rest is
-    hydrodynamic: Yeh and Hummer's, with the measured viscosity plus rho D, as a particle also leaves a vortex
-    by its own diffusion and each mode decays with nu + D (Ernst, Hauge and van Leeuwen 1970). Its uncertainty
-    is that of the viscosity and (2 pi mean free path / side)^2, the next order in the slowest mode.
+    """Measure D of a point, its correction to an infinite container, and the curves. With zero total
+    momentum, D of N particles is smaller by (N - 1) / N, exactly in a dilute gas, where each other particle
+    carries -1 / (N - 1) of a particle's momentum; the curves are divided by this. The rest is hydrodynamic:
+    Yeh and Hummer's, with the measured viscosity plus rho D, as a particle also leaves a vortex by its own
+    diffusion and each mode decays with nu + D (Ernst, Hauge and van Leeuwen 1970). Its uncertainty is that of
+    the viscosity and (2 pi mean free path / side)^2, the next order in the slowest mode.
     """
     state = shared.State(point)
     start = max(LINEAR_FROM / state.collision_rate, SETTLE_SHEAR_TIMES * state.shear_time)

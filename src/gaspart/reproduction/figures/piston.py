@@ -29,9 +29,8 @@ TITLE, CHAPTER = "Pressure on walls and pistons", "Equation of state and structu
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure each replica of paths (in each frame), of states, and of expansions.
-
-    Volume and temperature of a path are over their first values.
+    """Measure each replica of paths (in each frame), of states, and of expansions. Volume and temperature of
+    a path are over their first values.
     """
     kinds: dict[str, tuple] = {
         "path": (_path, "packing_fraction"),
@@ -72,11 +71,10 @@ def _length(run: Run) -> np.ndarray:
 
 
 def _heating(run: Run, length: np.ndarray, energy: np.ndarray) -> np.ndarray:
-    """Compute the increase (frame,) of ln T by viscous heating.
-
-    The gas between wall and piston flows with a velocity proportional to the distance from the wall. The heat
-    is the longitudinal viscosity (Enskog) times the square of the rate of strain. Along an adiabat the ratio
-    of two temperatures is constant, so that the increments add up.
+    """Compute the increase (frame,) of ln T by viscous heating. The gas between wall and piston flows with a
+    velocity proportional to the distance from the wall. The heat is the longitudinal viscosity (Enskog) times
+    the square of the rate of strain. Along an adiabat the ratio of two temperatures is constant, so that the
+    increments add up.
     """
     from scipy.integrate import cumulative_trapezoid
 
@@ -91,7 +89,6 @@ def _heating(run: Run, length: np.ndarray, energy: np.ndarray) -> np.ndarray:
 
 def _state(run: Run) -> dict[str, np.ndarray]:
     """Measure the density of the middle half, and P / (n k T), fluctuation and energy of the piston by it.
-
     The fluctuation is N times the variance of the volume over the square of the volume at this density; the
     energy is twice the piston's over k T.
     """
@@ -112,9 +109,8 @@ def _state(run: Run) -> dict[str, np.ndarray]:
 
 
 def _expansion(run: Run) -> dict[str, np.ndarray]:
-    """Measure energy, speed and share in the half that was empty, in the second half of the frames.
-
-    The energy is over the first one, the mean speed over that of equilibrium at the first temperature.
+    """Measure energy, speed and share in the half that was empty, in the second half of the frames. The
+    energy is over the first one, the mean speed over that of equilibrium at the first temperature.
     """
     scene, energy = run.scene, run.data["kinetic_energy"].values
     half = len(energy) // 2
@@ -200,9 +196,8 @@ def _factor(state: Row) -> Estimate:
 
 
 def isothermal_variance(packing_fraction: float | np.ndarray, dimension: int) -> np.ndarray:
-    """Compute N times the relative variance of the volume at constant temperature.
-
-    This variance follows from the speed of sound without the adiabatic term.
+    """Compute N times the relative variance of the volume at constant temperature. This variance follows from
+    the speed of sound without the adiabatic term.
     """
     adiabatic = theory.speed_of_sound(packing_fraction, dimension) ** 2
     heating = 2.0 / dimension * theory.compressibility_factor(packing_fraction, dimension) ** 2

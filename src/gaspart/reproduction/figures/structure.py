@@ -62,10 +62,9 @@ LAWS = {  # Verlet-Weis, Percus-Yevick
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`.
-
-    Contact values are times (N - 1) / N. `g_gain` and `s_gain` are root mean square distances of curves of
-    spheres from Verlet-Weis over those from Percus-Yevick.
+    """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`. Contact values are
+    times (N - 1) / N. `g_gain` and `s_gain` are root mean square distances of curves of spheres from
+    Verlet-Weis over those from Percus-Yevick.
     """
     measured = [point for point in points if point.experiment in settings["measured"]]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
@@ -94,7 +93,6 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
 
 def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> tuple[np.ndarray, ...]:
     """Return means over each block: S at `low`, g near contact, the drawn curves, Z, and collision rate.
-
     `curves` has wave vectors, their shells, and the largest distance. The curves use about `most` frames.
     """
     parts, series = Blocks(run, BLOCKS), series_of(run)
@@ -161,9 +159,8 @@ def _contact_values(near: np.ndarray, z: np.ndarray, rate: np.ndarray, gas: Gas)
 
 
 def _contact_per_rate(gas: Gas) -> float:
-    """Compute the contact value times (N - 1) / N over the reduced collision rate.
-
-    This ratio is exact for N particles. The reference equation of state cancels.
+    """Compute the contact value times (N - 1) / N over the reduced collision rate. This ratio is exact for N
+    particles. The reference equation of state cancels.
     """
     eta, dimension, count = gas.packing_fraction, gas.dimension, gas.count
     excess = theory.compressibility_factor(eta, dimension) - 1.0

@@ -41,7 +41,6 @@ ONE = {"units": "1"}
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure Z and collision rate at each packing fraction, and fit B2, B3, B4 with each of the fits.
-
     `poisson_error` is the error of Z for independent collisions, `held_error` the part of a fitted
     coefficient's error that is due to held coefficients.
     """
@@ -101,9 +100,8 @@ def _fit(pair: tuple[dict, Table], dimension: int) -> dict:
 def fit_coefficients(
     eta: np.ndarray, z: Estimate, dimension: int, free: int, held: bool
 ) -> tuple[Fit, np.ndarray]:
-    """Fit (Z-1)/eta = b_2 + b_3 eta + ... up to b_free, and compute the errors due to held coefficients.
-
-    If `held` is True, the higher coefficients up to B10 have their literature values, and the remaining terms
+    """Fit (Z-1)/eta = b_2 + b_3 eta + ... up to b_free, and compute the errors due to held coefficients. If
+    `held` is True, the higher coefficients up to B10 have their literature values, and the remaining terms
     are `virial.linear_tail`; the errors of the fit do not include theirs. Otherwise they are zero: the
     truncated series shows the effect of these terms.
     """

@@ -39,9 +39,8 @@ def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
 
 
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
-    """Convert the result of `to_plain` back.
-
-    Raises SceneError for a scene or an engine of another version.
+    """Convert the result of `to_plain` back. Raises SceneError for a scene or an engine of another
+    version.
     """
     return _convert(values, 1)
 

@@ -20,9 +20,25 @@ MADE_BY = "made_by"
 """Attribute of a data set of a point: the digest of the arguments of its job."""
 
 
+def kept_path(path: Path) -> Path:
+    """Return where the output of a point is kept, for a job that makes it again or longer."""
+    return path.parents[1] / ".kept" / path.parent.name / path.name
+
+
 def digest_of(parameters: dict[str, Any]) -> str:
     """Return the digest of the arguments of a job, as plain values."""
     return hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def made_by(path: str | Path) -> str:
+    """Return the digest of the arguments that made the data set of a point, or "".
+
+    May raise OSError.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        return str(getattr(file, MADE_BY, ""))
 
 
 class PointData(NamedTuple):
@@ -39,10 +55,7 @@ class PointData(NamedTuple):
     attributes: Mapping[str, Any] = _NONE
 
     def write(self, path: str | Path) -> None:
-        """Write a netCDF file that xarray.load_dataset reads.
-
-        May raise OSError.
-        """
+        """Write a netCDF file that xarray.load_dataset reads. May raise OSError."""
         import netCDF4
         import numpy as np
 
@@ -81,9 +94,8 @@ SCAN_TIME_STEPS = list_of(
 
 
 def intervals(point: Point) -> dict:
-    """Return the arguments of a job that divides its run into `samples` intervals.
-
-    The run follows the equilibration.
+    """Return the arguments of a job that divides its run into `samples` intervals. The run follows the
+    equilibration.
     """
     times = point.schedule
     return {

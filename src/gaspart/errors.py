@@ -1,11 +1,11 @@
-"""Exceptions for users of gaspart, and the format of values in messages.
+"""Exceptions for users of gaspart, the format of values in messages, and the word that a user means.
 
 There are two exceptions, `SceneError` and `SimulationError`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from itertools import islice
 from types import ModuleType
@@ -89,18 +89,14 @@ class SceneError(OneLine, ValueError):
 
 def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> str:
     """Return the rule for a message about an unknown word, with the word that is meant if it is clear."""
-    from gaspart.errors.words import meant
-
     names = list(candidates)
     meaning = meant(str(name), names)
     return f"unknown {kind}; " + (f"did you mean {meaning}?" if meaning else f"known are {', '.join(names)}")
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import an optional package, which belongs to an `extra` of pyproject.toml.
-
-    If the package is missing, SceneError is raised with the `purpose` of the package and the command that
-    installs it.
+    """Import an optional package, which belongs to an `extra` of pyproject.toml. If the package is missing,
+    SceneError is raised with the `purpose` of the package and the command that installs it.
     """
     try:
         return import_module(module)
@@ -112,10 +108,9 @@ def optional(module: str, extra: str, purpose: str) -> ModuleType:
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
-    """Return the entry points of a group, in the order of the search path.
-
-    A package whose list of entry points cannot be read is ignored. `importlib.metadata.entry_points` would
-    fail for all packages in this case.
+    """Return the entry points of a group, in the order of the search path. A package whose list of entry
+    points cannot be read is ignored. `importlib.metadata.entry_points` would fail for all packages in this
+    case.
     """
     from importlib.metadata import distributions  # takes 0.02 s
 
@@ -134,19 +129,12 @@ class SimulationError(OneLine, RuntimeError):
     """Violation of an invariant during a run, or a run that cannot continue.
 
     The caller keeps the last valid state.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> issubclass(gp.SimulationError, RuntimeError)
-    True
     """
 
 
 def short_repr(value: object) -> str:
-    """Format a value as one printable line of at most 120 characters.
-
-    The computing time is limited for values of any size.
+    """Format a value as one printable line of at most 120 characters. The computing time is limited for
+    values of any size.
     """
     return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
@@ -184,11 +172,10 @@ def _join_items(items: Iterable[str], count: int, depth: int) -> str:
 
 
 def visible(text: object, longest: int | None = None, names: bool = False) -> str:
-    """Return a text as one line without characters that a terminal would interpret or hide.
-
-    Line breaks, control characters and formatting characters are escaped, including characters that reverse
-    the writing direction. All printed text passes through this function, because files may contain text from
-    unknown sources.
+    """Return a text as one line without characters that a terminal would interpret or hide. Line breaks,
+    control characters and formatting characters are escaped, including characters that reverse the writing
+    direction. All printed text passes through this function, because files may contain text from unknown
+    sources.
 
     longest : maximum number of characters; the middle of a longer text is omitted.
     names : True to keep bytes of file names that are not UTF-8, except bytes that are control characters by
@@ -207,3 +194,73 @@ def visible(text: object, longest: int | None = None, names: bool = False) -> st
 
 def _escape(character: str) -> str:
     return character.encode("unicode_escape").decode()
+
+
+# Words of textbooks and other programs, and the names that gaspart has for them.
+
+
+_LIKE = 0.72
+"""Similarity (`difflib`) above which a misspelt word is recognized. Below, other words are as similar."""
+_WORDS = {
+    "N": ("count",),
+    "number": ("count", "sample_interval"),
+    "T": ("temperature",),
+    "temp": ("temperature",),
+    "dt": ("time_step",),
+    "diameter": ("radius (half the diameter)",),
+    "sigma": ("radius (half the diameter)",),
+    "eta": ("packing_fraction",),
+    "phi": ("packing_fraction",),
+    "density": ("packing_fraction", "activity"),
+    "box": ("container", "lengths", "cell_lengths", "Container"),
+    "L": ("lengths",),
+    "periodic": ("boundary (periodic or wall)", "container (its key boundary)"),
+    "gas": ("species",),
+    "obstacles": ("walls (or particles that are fixed)",),
+    "friction": ("restitution (its key tangential)",),
+    "left": ("x_low",),
+    "right": ("x_high",),
+    "bottom": ("z_low", "y_low"),
+    "top": ("z_high", "y_high"),
+    "time": ("duration",),
+    "interval": ("sample_interval", "samples"),
+    "fps": ("frames_per_second",),
+    "positions": ("coordinates",),
+    "velocity": ("velocities", "speed"),
+    "Sphere": ("Particle", "Species"),
+    "simulate": ("run",),
+    "animate": ("film",),
+}
+"""Names by word. The first name that is known in a place is meant there; a remark is in parentheses."""
+
+
+def meant(word: str, candidates: Sequence[str]) -> str:
+    """Return the candidate that a word means, or ""."""
+    from difflib import SequenceMatcher, get_close_matches  # takes 2 ms
+
+    plain = {name: name.rpartition(".")[2].lstrip("-").replace("-", "_") for name in candidates}
+    renamed = word.lstrip("-").replace("-", "_").replace("bodies", "particles").replace("body", "particle")
+    same = next((name for name in candidates if plain[name] == renamed), "")
+    for meaning in _WORDS.get(renamed) or _WORDS.get(renamed.lower(), ()):
+        for name in candidates:
+            if not same and plain[name] == meaning.split(" ")[0]:
+                return meaning.replace(plain[name], name, 1)
+    swapped = [name for name in plain.values() if sorted(name) == sorted(renamed)]
+    near = swapped or get_close_matches(renamed, list(dict.fromkeys(plain.values())), 2, _LIKE)
+    if len(near) > 1 and len({SequenceMatcher(None, name, renamed).ratio() for name in near}) == 1:
+        near = []  # as maxwell, of maxwell_pdf and maxwell_cdf
+    longer = [name for name in plain.values() if len(renamed) > 3 and name.startswith(renamed)]
+    longer = longer if len(longer) == 1 else []
+    return same or next((name for name in candidates if plain[name] in (near[:1] or longer)), "")
+
+
+class MissingName(OneLine, AttributeError):
+    """Error for a name that an owner lacks, with the name that is meant."""
+
+    def __init__(self, owner: str, name: str, names: Iterable[str] = ()) -> None:
+        meaning = meant(name, list(names))
+        remedy = f"; did you mean {meaning}?" if meaning else ""
+        super().__init__(f"{owner} has no attribute {name!r}{remedy}")
+
+    def __reduce__(self) -> tuple:
+        return (AttributeError, self.args)
