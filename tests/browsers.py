@@ -37,7 +37,7 @@ class _Handler(SimpleHTTPRequestHandler):
         pass
 
 
-def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240):
+def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240, fragment=""):
     """What the body of an asynchronous function of JavaScript returns on a page, and lines of its console."""
     text = page.read_text(encoding="utf-8").replace("<head>", f"<head>{_HEAD}", 1)
     text = "".join(text.rpartition("</body>")[:1]) + _TAIL.replace("SCRIPT", script) + "</html>"
@@ -45,7 +45,7 @@ def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240
     handler = type("Handler", (_Handler,), {"found": queue.Queue()})
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    address = f"http://127.0.0.1:{server.server_port}/driven.html"
+    address = f"http://127.0.0.1:{server.server_port}/driven.html{fragment}"
     profile = folder / f"profile-{browser.rpartition('/')[2]}"
     profile.mkdir(exist_ok=True)
     size = f"--window-size={width},{height}"
