@@ -25,14 +25,14 @@ from gaspart.scene.driving import Thermostat as Thermostat
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Open as Open
 from gaspart.scene.faces import Piston as Piston
-from gaspart.scene.faces import Sticky as Sticky
-from gaspart.scene.faces import Thermal as Thermal
 from gaspart.scene.faces import Vibrating as Vibrating
-from gaspart.scene.faces import Well as Well
 from gaspart.scene.restitution import Restitution as Restitution
 from gaspart.scene.scene import Scene as Scene
 from gaspart.scene.species import Particle as Particle
 from gaspart.scene.species import Species as Species
+from gaspart.scene.surfaces import Sticky as Sticky
+from gaspart.scene.surfaces import Thermal as Thermal
+from gaspart.scene.surfaces import Well as Well
 from gaspart.scene.walls import Plate as Plate
 from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation

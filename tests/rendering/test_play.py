@@ -1,6 +1,7 @@
 """The page on which a gas runs: it has the bits of simulations, and works in browsers."""
 
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -145,11 +146,28 @@ return seen;
 
 @needs_chromium
 def test_a_broken_link_opens_the_gas_with_a_line(page, tmp_path):
-    script = f'{DRIVE} return [gas.flags, byId("note").textContent, scrollY];'
-    for fragment, words in (("#state=%7B", "this link does not fit this page"), ("#run", "")):
-        found, lines = found_in(CHROMIUM, page, script, tmp_path, width=390, height=400, fragment=fragment)
-        flags, note, scrolled = found
-        assert not lines and flags == "r" and note.startswith(words) and scrolled == 0
+    script = f'{DRIVE} return [gas.flags, byId("note").textContent];'
+    found, lines = found_in(CHROMIUM, page, script, tmp_path, fragment="#state=%7B")
+    flags, note = found
+    assert not lines and flags == "r" and note.startswith("this link does not fit this page")
+def test_a_page_shows_all_particles_before_it_runs(gas):
+    (still,) = re.findall('<svg id="still".*?</svg>', gas.read_text(), re.DOTALL)
+    assert still.count("h0") == scene_of("gas").count and 'viewBox="0 0 48 36"' in still
+
+
+@needs_chromium
+def test_in_a_frame_of_another_page_the_gas_runs_alone(page, tmp_path):
+    named = tmp_path / "page.html"
+    named.write_text(page.read_text().replace("<head>", '<head><script>window.name = "alone"</script>'))
+    script = """
+for (let n = 0; n < 200 && !gas.time; n++) await wait(50);
+const shown = [...document.querySelectorAll("h1, aside, footer, fieldset, svg, canvas, button")].filter(
+  it => it.getClientRects().length).map(it => it.id);
+return { shown, time: gas.time, over: document.documentElement.scrollHeight > innerHeight };
+"""
+    found, lines = found_in(CHROMIUM, named, DRIVE + script, tmp_path, width=600, height=400)
+    assert not lines and found["time"] > 0.0 and not found["over"]
+    assert found["shown"] == ["canvas", "run"]
 
 
 @pytest.mark.thorough

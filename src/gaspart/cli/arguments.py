@@ -59,9 +59,8 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """Return a function that converts text to a finite number within limits.
-
-    The limits `above`, `least` and `most` are explained in `gaspart.keys.values.number`.
+    """Return a function that converts text to a finite number within limits. The limits `above`, `least` and
+    `most` are explained in `gaspart.keys.values.number`.
     """
     return _reader(float, "a finite number", limits)
 
@@ -107,10 +106,7 @@ def set_command(
 
 
 def list_names(meanings: dict[str, str]) -> str:
-    """Return names with their meanings, a line for each, in the layout of options.
-
-    Long lines are wrapped.
-    """
+    """Return names with their meanings, a line for each, in the layout of options. Long lines are wrapped."""
     column = 24
     lines = []
     for name, meaning in meanings.items():
@@ -132,19 +128,17 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 
 
 def config_command(command: str) -> Callable:
-    """Return the function of a command that uses a workflow's config or results.
-
-    The function is found by an entry point, because the library does not import the reproduction. Entry
-    points of other packages are ignored.
+    """Return the function of a command that uses a workflow's config or results. The function is found by an
+    entry point, because the library does not import the reproduction. Entry points of other packages are
+    ignored.
     """
     ours = [entry for entry in entry_points_of("gaspart.configs") if entry.value.startswith("gaspart.")]
     return next(entry for entry in ours if entry.name == command).load()
 
 
 def print_line(text: object) -> None:
-    """Print a text as one line (see `visible`).
-
-    Characters that the standard output cannot encode, for example in file names, are escaped.
+    """Print a text as one line (see `visible`). Characters that the standard output cannot encode, for
+    example in file names, are escaped.
     """
     line = visible(text, names=True)
     try:

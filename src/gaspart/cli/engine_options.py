@@ -26,9 +26,8 @@ def engine_settings() -> dict[str, Kind]:
 
 
 def add_setting(group: argparse._ArgumentGroup, name: str, kind: Kind) -> None:
-    """Add the option of a setting: a number, a word, a text, or a flag.
-
-    The option of a boolean setting is a flag that inverts the default.
+    """Add the option of a setting: a number, a word, a text, or a flag. The option of a boolean setting is a
+    flag that inverts the default.
     """
     option, meaning, default = name.replace("_", "-"), kind["description"], kind.get("default")
     usual = "" if default is None else f"; default: {default}"
@@ -68,10 +67,8 @@ def as_option(error: SceneError, engine: str) -> str:
 
 
 def changed_options(kinds: Mapping[str, Kind], settings: Mapping[str, Any]) -> list[str]:
-    """Return the options for all settings that differ from their defaults.
-
-    `kinds` contains the kinds of the settings. The result always includes the options of settings without a
-    default.
+    """Return the options for all settings that differ from their defaults. `kinds` contains the kinds of the
+    settings. The result always includes the options of settings without a default.
     """
     options: list[str] = []
     for name, kind in kinds.items():

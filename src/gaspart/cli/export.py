@@ -56,9 +56,8 @@ _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a remark for users of a scene's file in other programs; "" without a remark.
-
-    The suffix is .nc for a trajectory, or the suffix of an exported file.
+    """Return a remark for users of a scene's file in other programs; "" without a remark. The suffix is .nc
+    for a trajectory, or the suffix of an exported file.
     """
     state = {".nc": _of_trajectory, ".gsd": _of_gsd, ".xyz": _of_xyz, ".data": _of_data}[suffix]
     remarks = "; ".join(state(scene))

@@ -93,9 +93,8 @@ def _lines_of(scene: str) -> list[str]:
 
 
 def _measurable(recipe: Recipe) -> list[str]:
-    """Describe the observables of a run, and observables that require another run.
-
-    An observable can be measured if it is defined for the scene, and if the run has stored its data.
+    """Describe the observables of a run, and observables that require another run. An observable can be
+    measured if it is defined for the scene, and if the run has stored its data.
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 

@@ -75,10 +75,7 @@ def _why_ended(path: Path, reached: list[AccuracyStatus]) -> str:
 
 
 def run_options(path: Path, recipe: Recipe) -> list[str]:
-    """Return the options of `gaspart run` for a recipe.
-
-    For a replica, the options start all replicas.
-    """
+    """Return the options of `gaspart run` for a recipe. For a replica, the options start all replicas."""
     from gaspart.trajectory.replicas import of_all, path_of_all
 
     path, (recipe, replicas) = path_of_all(path, recipe), of_all(recipe)

@@ -97,10 +97,7 @@ def _contents(path: Path, overrides: Overrides) -> Contents:
 
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
-    """Convert any error in reading a file to SceneError.
-
-    Values that are not finite are rejected later.
-    """
+    """Convert any error in reading a file to SceneError. Values that are not finite are rejected later."""
     try:
         with np.errstate(all="ignore"):
             yield
@@ -112,9 +109,8 @@ def _reading(path: Path) -> Iterator[None]:
 
 
 def _require_memory(path: Path) -> None:
-    """Raise SceneError for a file whose frames exceed the memory, for example a sparse file.
-
-    Raises OSError if the file does not exist.
+    """Raise SceneError for a file whose frames exceed the memory, for example a sparse file. Raises OSError
+    if the file does not exist.
     """
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
@@ -139,6 +135,9 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
 
     The state is the last frame of the file.
 
+    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
+    scene. If radii and masses then differ from the scene, particles are assigned by their radii and masses.
+
     Parameters
     ----------
     path : str or Path
@@ -159,12 +158,6 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
     SceneError
         If the file has another number of particles, other sizes or masses, or another container; if
         `gaspart check` cannot read it; or if `Simulation` rejects the state.
-
-    Notes
-    -----
-    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
-    scene. If radii and masses then differ from the scene, particles are assigned by
-    their radii and masses.
 
     Examples
     --------
@@ -217,9 +210,8 @@ def _state_of_page(path: Path, scene: Scene) -> State:
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:
-    """Return values (N, d) from the values (N, 2 or 3) of a frame.
-
-    Discs that are not in a plane are rejected, and so are spheres in a plane.
+    """Return values (N, d) from the values (N, 2 or 3) of a frame. Discs that are not in a plane are
+    rejected, and so are spheres in a plane.
     """
     d, stated = scene.dimension, values.shape[1]
     if stated < d:
@@ -232,9 +224,8 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """Return the lower corner (d,) of the container.
-
-    A file contains the part of the container up to the piston, which is at its side when a run begins.
+    """Return the lower corner (d,) of the container. A file contains the part of the container up to the
+    piston, which is at its side when a run begins.
     """
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
@@ -249,9 +240,8 @@ def _origin(contents: Contents, scene: Scene) -> np.ndarray:
 
 
 def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
-    """Raise SceneError for a container with other side lengths.
-
-    Side lengths between walls may be unknown (0), and sides up to a piston may be shorter.
+    """Raise SceneError for a container with other side lengths. Side lengths between walls may be unknown
+    (0), and sides up to a piston may be shorter.
     """
     if contents.flat is not None and contents.flat != (scene.dimension == 2):
         has = "two" if contents.flat else "three"
@@ -268,9 +258,8 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
 
 
 def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
-    """Return the particle number (N,) in a file for each particle of the scene.
-
-    Particles are identified by their radii and masses in the file.
+    """Return the particle number (N,) in a file for each particle of the scene. Particles are identified by
+    their radii and masses in the file.
     """
     pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
     for name, stated in (("radius", contents.radii), ("mass", contents.masses)):

@@ -15,13 +15,14 @@ if TYPE_CHECKING:
 
 _SIZE, _DOTS = (3.2, 2.14), 150
 """Width and height in inches, and dots per inch: lettering of 8 points is 17 of the 321 pixels high."""
+_LETTERS = 20
+"""Mean number of letters of the entries of a legend up to which two fit beside each other."""
 _LETTER = re.compile(r"^\([a-z]\)\s*")
 
 
 def save_key_picture(figure: Figure, number: int | None, path: str | Path) -> None:
-    """Reduce a finished figure to one of its panels, and write it.
-
-    Renders stay whole, as does a figure without a number.
+    """Reduce a finished figure to one of its panels, and write it. Renders stay whole, as does a figure
+    without a number.
     """
     if number is not None and figure.axes[number].axison:
         _keep(figure, figure.axes[number])
@@ -46,7 +47,24 @@ def _keep(figure: Figure, panel: Axes) -> None:
     for legend in list(figure.legends):  # as wide as the whole figure was
         handles = [handle for handle in legend.legend_handles if handle is not None]
         texts = [text.get_text() for text in legend.get_texts()]
-        figure.legend(handles, texts, ncols=2, loc="outside upper center")
         legend.remove()
+        narrow = sum(map(len, texts)) < _LETTERS * len(texts)
+        figure.legend(handles, texts, ncols=2 if narrow else 1, loc="outside upper center")
     figure.set_layout_engine("constrained")
     legibility.place_legends(figure)
+    canvas = figure.bbox.padded(1.0)
+    for label in (panel.xaxis.label, panel.yaxis.label):
+        box = label.get_window_extent()
+        if not (canvas.contains(*box.min) and canvas.contains(*box.max)):
+            label.set_text(_two_lines(label.get_text()))
+            figure.set_layout_engine("constrained")
+            legibility.place_legends(figure)
+
+
+def _two_lines(text: str) -> str:
+    """Return a text with a line break at the space nearest to its middle, outside of formulas."""
+    spaces = [n for n, letter in enumerate(text) if letter == " " and text.count("$", 0, n) % 2 == 0]
+    if not spaces:
+        return text
+    middle = min(spaces, key=lambda n: abs(2 * n - len(text)))
+    return f"{text[:middle]}\n{text[middle + 1 :]}"

@@ -47,10 +47,9 @@ _PASSES = 5
 
 
 def place_legends(figure: Figure) -> None:
-    """Move each legend that covers data to a free position.
-
-    The position is in the panel if possible. Otherwise the vertical axis is extended, or the legend is placed
-    above the panel. Afterwards the layout of the figure is fixed.
+    """Move each legend that covers data to a free position. The position is in the panel if possible.
+    Otherwise the vertical axis is extended, or the legend is placed above the panel. Afterwards the layout of
+    the figure is fixed.
     """
     layout = figure.get_layout_engine()
     assert layout
@@ -96,9 +95,8 @@ def _text_points(text: Text) -> np.ndarray:
 
 
 def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
-    """Return True if the vertical axis was extended so that the legend fits at the top.
-
-    `free` is the width in pixels of the panel that is not below the legend.
+    """Return True if the vertical axis was extended so that the legend fits at the top. `free` is the width
+    in pixels of the panel that is not below the legend.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
@@ -135,9 +133,8 @@ def _inside_panel(axis: Axes, positions: np.ndarray) -> np.ndarray:
 
 
 def _marks(axis: Axes, lines: bool) -> np.ndarray:
-    """Return the positions (n, 2) in pixels of a panel's points and error bars.
-
-    If `lines` is True, points along curves are included. Guide lines across the whole panel are not data.
+    """Return the positions (n, 2) in pixels of a panel's points and error bars. If `lines` is True, points
+    along curves are included. Guide lines across the whole panel are not data.
     """
     from matplotlib.collections import LineCollection
 
@@ -173,10 +170,8 @@ def _along(positions: np.ndarray) -> np.ndarray:
 
 
 def flaws(figure: Figure) -> list[str]:
-    """Return the flaws of a saved figure, a sentence each.
-
-    Flaws are: text that overlaps other text or leaves the canvas, a legend on data, and text in a panel on a
-    point.
+    """Return the flaws of a saved figure, a sentence each. Flaws are: text that overlaps other text or leaves
+    the canvas, a legend on data, and text in a panel on a point.
     """
     from matplotlib.text import Text
 

@@ -43,8 +43,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
-from gaspart.trajectory.run_options import required_contents
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until, required_contents
 from gaspart.workers import in_processes
 from gaspart.yaml_text import dump_yaml
 
@@ -80,6 +79,11 @@ def sweep(
     """Run a scene for each combination of parameter values, and measure observables of each run.
 
     Trajectories are stored. A repeated call simulates only what is missing in `folder`.
+
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
 
     Parameters
     ----------
@@ -144,13 +148,6 @@ def sweep(
     --------
     run : A single run.
 
-    Notes
-    -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
-    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
-    otherwise each point would have another energy. A complete trajectory is not simulated again. An
-    interrupted trajectory is continued.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -210,9 +207,8 @@ def _with_equal_energies(scene: Scene) -> Scene:
 
 
 def _axes(over: object, engine: Engine) -> dict[str, list]:
-    """Return the values of each varying key, as Python numbers, words and lists.
-
-    A single value counts as a list of one value. Raises SceneError.
+    """Return the values of each varying key, as Python numbers, words and lists. A single value counts as a
+    list of one value. Raises SceneError.
     """
     if not isinstance(over, Mapping):
         rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
@@ -235,10 +231,7 @@ def _axes(over: object, engine: Engine) -> dict[str, list]:
 
 
 def _values(where: str, values: Any) -> list:
-    """Return the values of a key.
-
-    Raises SceneError for too many values, or for an iterator that fails.
-    """
+    """Return the values of a key. Raises SceneError for too many values, or for an iterator that fails."""
     plain = _plain(values)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]
@@ -261,9 +254,8 @@ def _plain(value: Any) -> Any:
 
 
 def _names(observables: object, axes: Mapping[str, list]) -> list[str]:
-    """Return the distinct names of the observables.
-
-    A single name counts as a list of one name. Raises SceneError.
+    """Return the distinct names of the observables. A single name counts as a list of one name. Raises
+    SceneError.
     """
     listed = [observables] if isinstance(observables, str) else observables
     if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
@@ -283,10 +275,7 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """Return the keys for the length of a point.
-
-    Raises SceneError.
-    """
+    """Return the keys for the length of a point. Raises SceneError."""
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     if until is None and at_most is not None:
@@ -306,10 +295,7 @@ def _length(
 
 
 def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """Return the keys for the contents of a point's files.
-
-    Raises SceneError.
-    """
+    """Return the keys for the contents of a point's files. Raises SceneError."""
     stored: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
     if "until" in length:
         del stored["pairs"]
@@ -335,10 +321,8 @@ def _point_keys(engine: Engine) -> set[str]:
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """Return the keys of a point's scene and engine that do not vary.
-
-    If a key of a gas varies, the scene is described by such keys. It must then be a single species in a
-    container. Raises SceneError.
+    """Return the keys of a point's scene and engine that do not vary. If a key of a gas varies, the scene is
+    described by such keys. It must then be a single species in a container. Raises SceneError.
     """
     settings = {"engine" if key == "name" else key: value for key, value in engine_to_dict(engine).items()}
     varied = next((key for key in axes if key in EXTENTS or key in GAS), None)
@@ -368,20 +352,14 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
 
 
 def _root(folder: Any) -> str:
-    """Return the absolute path of the folder of a sweep.
-
-    Raises SceneError.
-    """
+    """Return the absolute path of the folder of a sweep. Raises SceneError."""
     if not isinstance(folder, str | Path) or not str(folder) or "\0" in str(folder):
         raise SceneError("folder", folder, "must be the path of a folder")
     return str(Path(folder).absolute())
 
 
 def _make_folder(root: str) -> None:
-    """Make the folder of the points, unless it exists.
-
-    Raises SceneError.
-    """
+    """Make the folder of the points, unless it exists. Raises SceneError."""
     try:
         Path(root, EXPERIMENT).mkdir(parents=True, exist_ok=True)
     except (OSError, UnicodeEncodeError) as error:
@@ -393,9 +371,8 @@ def _make_folder(root: str) -> None:
 
 
 def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
-    """Return the points in order, and the reasons, by name, why points cannot be run.
-
-    Raises SceneError for values that no point can use, or if no point can be run.
+    """Return the points in order, and the reasons, by name, why points cannot be run. Raises SceneError for
+    values that no point can use, or if no point can be run.
     """
     try:
         points = list(gridded_points(config, EXPERIMENT).values())
@@ -439,11 +416,10 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
 def make_all(
     points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points, and call report(point, reason) for each.
-
-    The reason states why the point could not be made; "" if it was made. Points with existing trajectories
-    come first, so that a conflict is found before any run. Raises SceneError for files that cannot be
-    written, or belong to another sweep.
+    """Make the trajectories of all points, and call report(point, reason) for each. The reason states why the
+    point could not be made; "" if it was made. Points with existing trajectories come first, so that a
+    conflict is found before any run. Raises SceneError for files that cannot be written, or belong to another
+    sweep.
     """
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
@@ -464,10 +440,8 @@ def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overw
 
 
 def _make(point: Point, overwrite: bool) -> str:
-    """Make the trajectories of a point, or check existing trajectories in its folder.
-
-    Returns the reason for a failure, or "". The failure does not affect other points. Raises SceneError for
-    files.
+    """Make the trajectories of a point, or check existing trajectories in its folder. Returns the reason for
+    a failure, or "". The failure does not affect other points. Raises SceneError for files.
     """
     folder = Path(point.path)
     try:

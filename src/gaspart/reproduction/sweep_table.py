@@ -33,10 +33,9 @@ class SweepTable(ByFace):
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
     ) -> Axes:
-        """Draw an observable with bars of one standard deviation, and theory as black lines.
-
-        There is one curve for each value of the other dimensions. The theory is known at the points of the
-        sweep; the line between them is a monotone cubic.
+        """Draw an observable with bars of one standard deviation, and theory as black lines. There is one
+        curve for each value of the other dimensions. The theory is known at the points of the sweep; the line
+        between them is a monotone cubic.
         """
         import matplotlib.pyplot as plt
 
@@ -67,10 +66,7 @@ class SweepTable(ByFace):
 
 
 def _check_name(key: str, name: str | None, names: list[str]) -> str:
-    """Return a name of the table, by default the first.
-
-    Raises SceneError.
-    """
+    """Return a name of the table, by default the first. Raises SceneError."""
     if not names:
         raise SceneError(key, name, "there is nothing to be drawn: the sweep has one point")
     if name is not None and name not in names:
@@ -106,10 +102,9 @@ def _refined(x: np.ndarray, theory: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:
-    """Yield the variables of an observable of a point.
-
-    All observables share dimensions whose coordinates are names. Other dimensions belong to one observable;
-    their positions are a variable, because they may differ from point to point.
+    """Yield the variables of an observable of a point. All observables share dimensions whose coordinates are
+    names. Other dimensions belong to one observable; their positions are a variable, because they may differ
+    from point to point.
     """
     first, quantity = replicas[0].estimate, replicas[0].attrs["quantity"]
     own = {dim: f"{name}_{dim}" for dim in first.dims if not DIMENSIONS[str(dim)].names}

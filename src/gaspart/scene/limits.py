@@ -16,7 +16,6 @@ from gaspart.keys.values import finite_vector
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
-    from gaspart.scene.scene import Scene
     from gaspart.scene.species import Particle, Species
 
 
@@ -29,9 +28,8 @@ _UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 
 
 def ball_volume(dimension: int, radius: float = 1.0) -> float:
-    """Return the area of a disc or the volume of a sphere.
-
-    The area is pi r^2, and the volume is 4 pi r^3 / 3.
+    """Return the area of a disc or the volume of a sphere. The area is pi r^2, and the volume is 4 pi r^3 /
+    3.
     """
     return _UNIT_BALL[dimension] * radius**dimension
 
@@ -40,40 +38,20 @@ def ball_volume(dimension: int, radius: float = 1.0) -> float:
 _RESOLVED = 1e12
 _ROOM = 1e-6  # minimum clearance of a particle between two walls, in radii
 _UNITS = 8.0 * 2.0**-52  # tolerance, in units in the last place
-_SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
 
 
 def rounding(position: Iterable[float], *lengths: float) -> float:
-    """Return the tolerance of prescribed positions.
-
-    Particles and walls that touch in decimal numbers may overlap in binary numbers, because 0.6 - 0.5 < 0.1
-    after rounding. The tolerance is a few units in the last place of the largest coordinate.
+    """Return the tolerance of prescribed positions. Particles and walls that touch in decimal numbers may
+    overlap in binary numbers, because 0.6 - 0.5 < 0.1 after rounding. The tolerance is a few units in the
+    last place of the largest coordinate.
     """
     return _UNITS * max(*map(abs, position), *lengths)
 
 
-def closest_packing(scene: Scene) -> float:
-    """Return the highest possible packing fraction.
-
-    For particles of one size the fraction is known exactly; otherwise the upper bound 1 is returned.
-    """
-    alike = (
-        len({kind.radius for kind in scene.species if kind.count} | {it.radius for it in scene.particles}) < 2
-    ) and all(kind.alike for kind in scene.species)
-    return CLOSE_PACKING[scene.dimension] if alike else 1.0
-
-
-def check_packing(scene: Scene) -> None:
-    """Raise SceneError for more particles than the container can hold."""
-    if not scene.centres_to_walls and scene.packing_fraction > closest_packing(scene) * (1.0 + _SUM):
-        raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
-
-
 def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
-    """Raise SceneError, with `key`, if a particle does not fit into the container.
-
-    SceneError is also raised for a particle that is not fixed but has no room to move, and for a particle so
-    small that rounding would hide its contacts.
+    """Raise SceneError, with `key`, if a particle does not fit into the container. SceneError is also raised
+    for a particle that is not fixed but has no room to move, and for a particle so small that rounding would
+    hide its contacts.
     """
     radius = particle.largest_radius
     shortest, longest = min(container.lengths), max(container.lengths)
@@ -93,9 +71,8 @@ def check_room(container: Container, centres_to_walls: bool, key: str, particle:
 
 
 def check_region(container: Container, key: str, kind: Species) -> None:
-    """Raise SceneError, with `key`, for an invalid region of a species.
-
-    The region must be a box inside the container that is large enough for one of its particles.
+    """Raise SceneError, with `key`, for an invalid region of a species. The region must be a box inside the
+    container that is large enough for one of its particles.
     """
     if kind.region is None:
         return
@@ -112,9 +89,8 @@ def check_region(container: Container, key: str, kind: Species) -> None:
 
 
 class Nearby:
-    """Cells of width `reach` or more, to find positions near a point quickly.
-
-    Positions are near if their distance is at most `reach`.
+    """Cells of width `reach` or more, to find positions near a point quickly. Positions are near if their
+    distance is at most `reach`.
     """
 
     def __init__(self, container: Container, reach: float) -> None:

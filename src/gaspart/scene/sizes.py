@@ -87,10 +87,9 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
-    """Return the radii (count,) divided by their mean, in descending order.
-
-    The radii are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution whose standard deviation
-    is the polydispersity. They are scaled so that their mean is 1.
+    """Return the radii (count,) divided by their mean, in descending order. The radii are the quantiles at (k
+    + 1/2) / count, k = 0, 1 ..., of a distribution whose standard deviation is the polydispersity. They are
+    scaled so that their mean is 1.
     """
     import numpy as np
 

@@ -86,26 +86,12 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """Index of the first sample, in intervals from time 0.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
-        20
-        """
+        """Index of the first sample, in intervals from time 0."""
         return round(self.start / self.interval)
 
     @property
     def tallies(self) -> tuple[OptionalTally, ...]:
-        """Optional tallies that the correlations need.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [tally.name for tally in gp.Correlations(interval=0.1, lags=100, stress=True).tallies]
-        ['stress']
-        """
+        """Optional tallies that the correlations need."""
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
@@ -115,12 +101,6 @@ class Correlations:
         -------
         str
             JSON of the settings.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100).to_json()
-        '{"interval": 0.1, "lags": 100, "start": 0.0}'
         """
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
 
@@ -144,12 +124,6 @@ class Correlations:
             If a value is invalid.
         TypeError, ValueError
             If the text does not describe correlations.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations.from_json('{"interval": 0.1, "lags": 100}').lags
-        100
         """
         return cls(**json.loads(text))
 
@@ -186,10 +160,8 @@ def meaning_of(name: str) -> str:
 
 
 class _Correlator:
-    """Sums over all pairs of samples up to a largest lag.
-
-    The last axis of the array `earlier` contains the most recent samples, one for each lag. The last axis of
-    `sums` is the lag, too.
+    """Sums over all pairs of samples up to a largest lag. The last axis of the array `earlier` contains the
+    most recent samples, one for each lag. The last axis of `sums` is the lag, too.
     """
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
@@ -226,13 +198,12 @@ class _Correlator:
 
 
 class Correlator(_Correlator):
-    """Correlations of the motion of the particles.
-
-    Velocities and positions of all moving particles are used. Along axes with conserved momentum
-    (`Scene.conserved_axes`), they are relative to the centre of mass. If faces slide, their mean velocity is
-    subtracted. The subtraction of the motion of the centre of mass multiplies the mean square for a particle
-    of mass m by 1 - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along
-    all axes, components are rescaled so that the factor is 1 - 1 / N for all N particles and all axes.
+    """Correlations of the motion of the particles. Velocities and positions of all moving particles are used.
+    Along axes with conserved momentum (`Scene.conserved_axes`), they are relative to the centre of mass. If
+    faces slide, their mean velocity is subtracted. The subtraction of the motion of the centre of mass
+    multiplies the mean square for a particle of mass m by 1 - m / M, where M is the total mass. If masses
+    differ, or if momentum is not conserved along all axes, components are rescaled so that the factor is 1 -
+    1 / N for all N particles and all axes.
     """
 
     def __init__(self, settings: Correlations, scene: Scene, masses: np.ndarray, displacements: bool) -> None:
@@ -263,9 +234,8 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) for moving particles only, relative to the centre of mass.
-
-        For M moving particles, the result has the shape (M d,).
+        """Return values (N, d) for moving particles only, relative to the centre of mass. For M moving
+        particles, the result has the shape (M d,).
         """
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
@@ -291,10 +261,9 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 
 
 class StressCorrelator(_Correlator):
-    """Correlations of the stress tensor and the heat flux, after both are averaged over an interval.
-
-    The stress is averaged because impulses are instantaneous, while their mean over an interval is finite.
-    The first sample is not counted, because there is no interval before it.
+    """Correlations of the stress tensor and the heat flux, after both are averaged over an interval. The
+    stress is averaged because impulses are instantaneous, while their mean over an interval is finite. The
+    first sample is not counted, because there is no interval before it.
     """
 
     def __init__(self, settings: Correlations, dimension: int) -> None:

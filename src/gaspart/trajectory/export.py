@@ -116,9 +116,8 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return an iterator over one frame, or over all frames for `frame` = "all".
-
-    Errors for frames that cannot be exported are raised immediately.
+    """Return an iterator over one frame, or over all frames for `frame` = "all". Errors for frames that
+    cannot be exported are raised immediately.
     """
     recipe = read_recipe(path)
     recipe.require_all(path)
@@ -167,10 +166,9 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write frames as a GSD file in HOOMD's schema.
-
-    The entry `log/time` contains the time of a frame. The entry `log/cell_origin` contains the lower corner
-    of the box in the scene's coordinates, which a piston may move. The step of a frame is its index.
+    """Write frames as a GSD file in HOOMD's schema. The entry `log/time` contains the time of a frame. The
+    entry `log/cell_origin` contains the lower corner of the box in the scene's coordinates, which a piston
+    may move. The step of a frame is its index.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
@@ -179,9 +177,8 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a GSD frame, whose coordinates have their origin in the middle of the box.
-
-    For discs the thickness of the box is zero.
+    """Fill a GSD frame, whose coordinates have their origin in the middle of the box. For discs the thickness
+    of the box is zero.
     """
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
@@ -200,9 +197,8 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """Return the shape of each type; {} for a type with particles of different sizes.
-
-    The shapes are needed because other programs assume a diameter of 1 without them.
+    """Return the shape of each type; {} for a type with particles of different sizes. The shapes are needed
+    because other programs assume a diameter of 1 without them.
     """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
@@ -232,9 +228,8 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write a LAMMPS data file of atom_style sphere.
-
-    The density is the particle's mass divided by the volume of a ball of its diameter.
+    """Write a LAMMPS data file of atom_style sphere. The density is the particle's mass divided by the volume
+    of a ball of its diameter.
     """
     (snapshot,) = snapshots
     count = len(snapshot.positions)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.faces import GRADIENT
 from gaspart.state.given import state_from_arrays
 from gaspart.state.state import State
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 def last_state(path: str | Path) -> State:
     """Return the state of all particles at the end of a trajectory.
+
+    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
+    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
+    displacement of sheared images are exact.
 
     Parameters
     ----------
@@ -44,12 +48,6 @@ def last_state(path: str | Path) -> State:
         Without a checkpoint, SceneError is also raised if the last frame does not contain all particles
         (`follow`) or all properties (`keep`), or if a frame does not determine the state (in a scene with
         sticky faces).
-
-    Notes
-    -----
-    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
-    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
-    displacement of sheared images are exact.
 
     Examples
     --------

@@ -14,9 +14,8 @@ _NAME = "pair collisions"  # name of the array in a checkpoint
 
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:
-    """Return the pairs of species by their indices, the lower index first.
-
-    Raises SceneError for single particles.
+    """Return the pairs of species by their indices, the lower index first. Raises SceneError for single
+    particles.
     """
     if scene.particles:
         raise SceneError(

@@ -48,6 +48,16 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     Values are read on demand. Close the Dataset, or use it in a `with` statement.
 
+    Attributes contain the scene (YAML), the engine and the seed (JSON), and properties of the scene:
+    dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
+    given_start is 1 if the run starts from a state that the user supplied.
+
+    With open faces, the dimension atom counts particle numbers. If no particle in the container has a number
+    in a frame, its coordinates and velocities are NaN.
+
+    When a file is opened, only the times of its frames are read. The checksum of a frame is for all of its
+    variables together, so that all of them are read before one of them is used.
+
     Parameters
     ----------
     path : str or Path
@@ -66,18 +76,6 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     SceneError
         If the file is unreadable, truncated, damaged in its header, or not written by gaspart. SceneError is
         also raised when a damaged frame is read for the first time.
-
-    Notes
-    -----
-    Attributes contain the scene (YAML), the engine and the seed (JSON), and properties of the scene:
-    dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
-    given_start is 1 if the run starts from a state that the user supplied.
-
-    With open faces, the dimension atom counts particle numbers. If no particle in the container has a number
-    in a frame, its coordinates and velocities are NaN.
-
-    When a file is opened, only the times of its frames are read. The checksum of a frame is for all of its
-    variables together, so that all of them are read before one of them is used.
 
     Examples
     --------

@@ -25,13 +25,13 @@ from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
-from gaspart.scene.face_checks import mean_count, refuse_open
+from gaspart.scene.boundaries import mean_count, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 # Scenes that the DSMC engine supports.
@@ -134,9 +134,8 @@ _WHOLE = 2**FINEST
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
-
-    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps. A step may be
+    divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
     time_step : length of a step, prescribed or chosen by the engine
     """
@@ -145,7 +144,7 @@ class DsmcDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: DSMC,
+        engine: DsmcSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],

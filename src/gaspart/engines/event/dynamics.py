@@ -144,9 +144,8 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Move particles to a periodic face if they are beyond it only because of rounding.
-
-    These particles reach the face exactly at the present time.
+    """Move particles to a periodic face if they are beyond it only because of rounding. These particles reach
+    the face exactly at the present time.
     """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
@@ -161,10 +160,8 @@ def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
 
 
 class EventDynamics(Dynamics):
-    """Running scene under the event-driven engine.
-
-    Each particle has a clock. A run is divided into epochs, and times on the clocks are relative to the start
-    of the current epoch, so that they keep their precision.
+    """Running scene under the event-driven engine. Each particle has a clock. A run is divided into epochs,
+    and times on the clocks are relative to the start of the current epoch, so that they keep their precision.
     """
 
     numbers = ("start", "epoch", "base", "quiet", "clock", "since")
@@ -240,12 +237,10 @@ class EventDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `max_events` of them.
-
-        Events are collisions, wall hits, and attempted entries through open faces. Raises SimulationError,
-        with the state saved, in two cases. The first is a collapse: infinitely many collisions in a finite
-        time. The second is a run without an end time in which no event occurs during a thousand flights
-        through the container.
+        """Process events up to time `until`, at most `max_events` of them. Events are collisions, wall hits,
+        and attempted entries through open faces. Raises SimulationError, with the state saved, in two cases.
+        The first is a collapse: infinitely many collisions in a finite time. The second is a run without an
+        end time in which no event occurs during a thousand flights through the container.
 
         max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
             of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
@@ -311,18 +306,16 @@ class EventDynamics(Dynamics):
         self._clock = until - self._start
 
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
-        """Run the kernel, and return the reason why it stopped, its counts, and the last time.
-
-        The counts are the numbers of processed events and crossings. The time is the time of the last event.
+        """Run the kernel, and return the reason why it stopped, its counts, and the last time. The counts are
+        the numbers of processed events and crossings. The time is the time of the last event.
         """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self, endless: bool) -> float:
-        """Restart the clocks from zero and predict all events again.
-
-        Returns the length of the previous epoch.
+        """Restart the clocks from zero and predict all events again. Returns the length of the previous
+        epoch.
 
         endless : True if only a number of events ends the run
         """
@@ -354,10 +347,9 @@ class EventDynamics(Dynamics):
         return self._epochs.base(self._flights["velocity"], stored, present)
 
     def _renew_epoch(self) -> float:
-        """Start shorter epochs if the particles have become much faster.
-
-        All particles must be at the present time. The new lengths are needed because an epoch of a gas at
-        rest has no end. Returns the amount by which the start of the epoch has moved.
+        """Start shorter epochs if the particles have become much faster. All particles must be at the present
+        time. The new lengths are needed because an epoch of a gas at rest has no end. Returns the amount by
+        which the start of the epoch has moved.
         """
         base, time = self._base_from(self._base), self.time
         if base >= self._base:
@@ -436,7 +428,6 @@ class EventDynamics(Dynamics):
 
     def _checkpoint_data(self) -> dict[str, Any]:
         """Return the data of a checkpoint: particles at their own times, predictions, counters, search.
-
         Neighbour lists are not stored, but only their capacity `room`. If the capacity does not suffice after
         the restart, all lists are made again; the counters of work then differ.
         """
@@ -454,9 +445,8 @@ class EventDynamics(Dynamics):
         )
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the arrays of the search.
-
-        If the checkpoint is from a different search, the centres of neighbour lists are not required.
+        """Return the arrays required from a checkpoint, except the arrays of the search. If the checkpoint is
+        from a different search, the centres of neighbour lists are not required.
         """
         spared = {
             *self._search_settings(),

@@ -74,10 +74,8 @@ class StressPart(TallyPart):
 
 
 class ShearedStressPart(StressPart):
-    """Stress tensor and heat flux of a sheared gas.
-
-    Velocities relative to the flow change during a flight. Therefore the contribution of each flight is
-    computed from the time of its last event.
+    """Stress tensor and heat flux of a sheared gas. Velocities relative to the flow change during a flight.
+    Therefore the contribution of each flight is computed from the time of its last event.
     """
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
@@ -85,10 +83,8 @@ class ShearedStressPart(StressPart):
         self._model = model
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the velocity of the centre of mass relative to the flow.
-
-        The component along the gradient of the flow is constant. Therefore the component along the flow
-        decreases linearly with time.
+        """Set the velocity of the centre of mass relative to the flow. The component along the gradient of
+        the flow is constant. Therefore the component along the flow decreases linearly with time.
         """
         assert model.shear is not None  # otherwise this part would not exist
         across = self._drift[GRADIENT]
@@ -129,20 +125,17 @@ def stress_part(
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """Return the row (N,) of each particle in sums by species.
-
-    The row is the index of the species. Single particles come first among the particles, but have the last
-    row.
+    """Return the row (N,) of each particle in sums by species. The row is the index of the species. Single
+    particles come first among the particles, but have the last row.
     """
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum that particles transport through planes across an axis.
-
-    The sums contain the momentum below each plane at the last reset, plus all impulses since then. When the
-    tally is read, the present momentum below each plane is subtracted.
+    """Momentum that particles transport through planes across an axis. The sums contain the momentum below
+    each plane at the last reset, plus all impulses since then. When the tally is read, the present momentum
+    below each plane is subtracted.
 
     flights : (N,), particles at the times of their last events
     """
@@ -264,9 +257,8 @@ PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size.
-
-    The inverse is 0 for faces that no centre can reach. Fixed particles have the index 0.
+    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size. The inverse is
+    0 for faces that no centre can reach. Fixed particles have the index 0.
     """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
@@ -277,9 +269,8 @@ def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,).
-
-    Interior walls have the value 0.
+    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,). Interior walls have the
+    value 0.
     """
     return {
         "momentum_per_area": np.pad(momentum, ((0, walls), (0, 0))),
@@ -288,9 +279,8 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Momentum and heat per accessible area, for the event-driven engine.
-
-    Masses are in units of `unit_mass`.
+    """Momentum and heat per accessible area, for the event-driven engine. Masses are in units of
+    `unit_mass`.
     """
 
     kernel: PerArea

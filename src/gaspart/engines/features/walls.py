@@ -23,10 +23,8 @@ _INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """Return the interior walls, with a list of the walls near each box.
-
-    The list can be used for particles with radii up to `largest_radius`. A moving wall is not in the list of
-    any box.
+    """Return the interior walls, with a list of the walls near each box. The list can be used for particles
+    with radii up to `largest_radius`. A moving wall is not in the list of any box.
     """
     rows, wall = wall_rows(scene)
     if moving:
@@ -58,10 +56,9 @@ class WarmWallsPart(Part):
 
 
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
-    """Return the kernels' moving wall; None if the scene has no moving wall.
-
-    The mass of the wall is in units of `unit_mass`. Raises SceneError unless there are particles on both
-    sides, because otherwise the wall would leave the container.
+    """Return the kernels' moving wall; None if the scene has no moving wall. The mass of the wall is in units
+    of `unit_mass`. Raises SceneError unless there are particles on both sides, because otherwise the wall
+    would leave the container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:

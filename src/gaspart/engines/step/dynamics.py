@@ -35,7 +35,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 _BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
 _OF_ALL = ("counts", "sums", "extremes")
@@ -47,7 +47,7 @@ class StepDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: TimeStepped,
+        engine: StepSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],
@@ -142,9 +142,8 @@ class StepDynamics(SteppedDynamics):
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return the momentum along each axis and the heat given to each face, per accessible area.
-
-        The shape is (2d, d + 1).
+        """Return the momentum along each axis and the heat given to each face, per accessible area. The shape
+        is (2d, d + 1).
 
         most : inverse of the smallest area
         """
@@ -171,9 +170,8 @@ class StepDynamics(SteppedDynamics):
         return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the origin of the neighbour list.
-
-        The origin is not required because the checkpoint may be from another search.
+        """Return the arrays required from a checkpoint, except the origin of the neighbour list. The origin
+        is not required because the checkpoint may be from another search.
         """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
@@ -187,9 +185,8 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """Return the origin (d, N) of the neighbour list by slot, and its settings.
-
-        The origin consists of the positions of the particles when the list was made.
+        """Return the origin (d, N) of the neighbour list by slot, and its settings. The origin consists of
+        the positions of the particles when the list was made.
         """
         if self._search.cells is None:
             return {}

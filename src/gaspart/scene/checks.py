@@ -1,32 +1,79 @@
-"""Checks of faces that involve the rest of the scene, and particle numbers for open faces."""
+"""Checks of the parts of a scene against each other: features, walls, faces, and drives."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import finite_vector, size
-from gaspart.scene.faces import (
-    FACE_KINDS,
-    FACES,
-    GRADIENT,
-    LeesEdwards,
-    Open,
-    Piston,
-    Sticky,
-    Thermal,
-    Vibrating,
-    Well,
-)
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume, closest_packing
+from gaspart.scene.boundaries import attempt_rate
+from gaspart.scene.faces import FACE_KINDS, GRADIENT, LeesEdwards, Open, Piston, Vibrating
+from gaspart.scene.facts import Facts
+from gaspart.scene.features import EXCLUDED, FEATURES
+from gaspart.scene.surfaces import FACES, Sticky, Thermal, Well
+from gaspart.scene.walls import WALL_RULE, Plate, Wall, crossed_axis, wall_kind
 
-if TYPE_CHECKING:
-    from gaspart.scene.scene import Scene
-    from gaspart.scene.walls import Plate, Wall
+_SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
 
 
-def check_faces(scene: Scene) -> None:
+def check_features(scene: Facts) -> None:
+    """Raise SceneError if two features of a scene exclude each other."""
+    present = scene.features
+    for (name, other), reason in EXCLUDED.items():
+        if name in present and other in present:
+            raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {reason}")
+
+
+def check_packing(scene: Facts) -> None:
+    """Raise SceneError for more particles than the container can hold."""
+    if not scene.centres_to_walls and scene.packing_fraction > scene.closest_packing * (1.0 + _SUM):
+        raise SceneError("packing_fraction", scene.packing_fraction, "exceeds close packing")
+
+
+# Interior walls.
+
+
+def check_walls(scene: Facts) -> None:
+    """Raise SceneError for an interior wall that does not fit into the scene."""
+    for n, wall in enumerate(scene.walls):
+        if not isinstance(wall, wall_kind(scene.container)):
+            raise SceneError(f"walls[{n}]", wall, WALL_RULE)
+        if scene.centres_to_walls:
+            raise SceneError(
+                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
+            )
+        for key, point in wall.corners.items():
+            inside = zip(point, scene.container.lengths, strict=True)
+            if not all(0.0 <= x <= length for x, length in inside):
+                raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
+    check_moving_wall(scene)
+
+
+def check_moving_wall(scene: Facts) -> None:
+    """Raise SceneError unless a moving wall spans the container and is the only wall."""
+    for n, wall in enumerate(scene.walls):
+        if wall.mass is None:
+            continue
+        key, lengths = f"walls[{n}].mass", scene.container.lengths
+        if len(scene.walls) > 1:
+            raise SceneError(key, wall.mass, "must be the only interior wall, since it moves")
+        if wall.temperature is not None:
+            raise SceneError(
+                key, wall.mass, "excludes a temperature; a wall that moves is smooth and elastic"
+            )
+        axis = crossed_axis(wall, lengths)
+        if axis < 0:
+            rule = "a wall that moves must reach across the whole container, at right angles to an axis"
+            raise SceneError(key, wall.mass, rule)
+        if scene.container.periodic[axis]:
+            rule = f"a wall that moves needs walls across {'xyz'[axis]}, along which it does"
+            raise SceneError(key, wall.mass, rule)
+
+
+# Faces.
+
+
+def check_faces(scene: Facts) -> None:
     """Raise SceneError for faces that this scene cannot have."""
     if not isinstance(scene.faces, dict):
         raise SceneError("faces", scene.faces, "must be a mapping of faces to their kinds")
@@ -63,7 +110,7 @@ def check_faces(scene: Scene) -> None:
     _check_room(scene)
 
 
-def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
+def _check_sheared(scene: Facts, name: str, surface: LeesEdwards) -> None:
     """Raise SceneError if a sheared face is not y_high, or the container has walls."""
     if name != FACES[2 * GRADIENT + 1]:
         rule = (
@@ -75,7 +122,7 @@ def _check_sheared(scene: Scene, name: str, surface: LeesEdwards) -> None:
     size(f"faces.{name}.shear_rate", surface.shear_rate * scene.container.lengths[GRADIENT])
 
 
-def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> None:
+def _check_velocity(scene: Facts, name: str, velocity: tuple[float, ...]) -> None:
     """Raise SceneError for a velocity that is not parallel to the face."""
     finite_vector(f"faces.{name}.velocity", velocity, scene.dimension)
     if velocity[FACES.index(name) // 2] != 0.0:
@@ -83,7 +130,7 @@ def _check_velocity(scene: Scene, name: str, velocity: tuple[float, ...]) -> Non
         raise SceneError(f"faces.{name}.velocity", velocity, rule)
 
 
-def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
+def _check_ramp(scene: Facts, name: str, surface: Thermal, axis: int) -> None:
     """Raise SceneError if a temperature varies along the face's normal or along a periodic axis."""
     key = f"faces.{name}.temperature"
     if axis == FACES.index(name) // 2:
@@ -92,10 +139,9 @@ def _check_ramp(scene: Scene, name: str, surface: Thermal, axis: int) -> None:
         raise SceneError(key, surface.temperature, f"needs walls across {'xyz'[axis]}, where it has its ends")
 
 
-def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
-    """Raise SceneError for a second piston, or a piston that moves too fast.
-
-    The speed may be prescribed, or result from the external pressure.
+def _check_piston(scene: Facts, name: str, surface: Piston) -> None:
+    """Raise SceneError for a second piston, or a piston that moves too fast. The speed may be prescribed, or
+    result from the external pressure.
     """
     if len(scene.pistons) > 1:
         raise SceneError("faces", [FACES[n] for n, _ in scene.pistons], "must include at most one piston")
@@ -103,36 +149,7 @@ def _check_piston(scene: Scene, name: str, surface: Piston) -> None:
     size(f"faces.{name}.speed", surface.speed or 0.0)
 
 
-def piston_end(scene: Scene, position: float | None = None) -> float:
-    """Return the time at which a piston of prescribed speed compresses the particles to closest packing.
-
-    The result is infinite if the scene has no such piston.
-
-    position : position along the axis of the piston at time 0. Default: the side of the container.
-    """
-    for number, face in scene.pistons:
-        if face.speed is not None:
-            axis, length = number // 2, scene.container.lengths[number // 2]
-            low, high = scene.reach(scene.largest_radius)
-            packed = length * scene.packing_fraction / closest_packing(scene)
-            least = max(length - (high[axis] - low[axis]), packed)
-            begin = 0.0 if position is None else length - position if number % 2 else position
-            return max(0.0, length - begin - least) / face.speed
-    return math.inf
-
-
-def check_piston_end(scene: Scene, key: str, until: float, position: float | None = None) -> None:
-    """Raise SceneError if a run would end, at `until`, later than `piston_end`.
-
-    `key` names the setting of this end in the message.
-    """
-    end = piston_end(scene, position)
-    if end < until:
-        rule = f"must be before {end:.6g}, when the piston leaves no room for the particles"
-        raise SceneError(key, until, rule)
-
-
-def _check_vibrating(scene: Scene, name: str, surface: Vibrating) -> None:
+def _check_vibrating(scene: Facts, name: str, surface: Vibrating) -> None:
     """Raise SceneError for obstacles against which a vibrating face would squeeze a particle."""
     axis, upper = FACES.index(name) // 2, FACES.index(name) % 2 == 1
     length = scene.container.lengths[axis]
@@ -163,7 +180,7 @@ def _is_upright(wall: Wall | Plate, axis: int) -> bool:
     )
 
 
-def _check_room(scene: Scene) -> None:
+def _check_room(scene: Facts) -> None:
     """Raise SceneError if vibrating faces leave too little space."""
     moving = {name: face for name, face in scene.faces.items() if isinstance(face, Vibrating)}
     low, high = scene.reach(scene.largest_radius)
@@ -176,24 +193,19 @@ def _check_room(scene: Scene) -> None:
             rule = "leaves no room for the largest particle"
             raise SceneError(f"faces.{name}.amplitude", face.amplitude, rule)
         fraction *= 1.0 - stroke / scene.container.lengths[axis]
-    if moving and scene.packing_fraction > fraction * closest_packing(scene):
+    if moving and scene.packing_fraction > fraction * scene.closest_packing:
         rule = "exceeds close packing where the faces have moved inwards"
         raise SceneError("packing_fraction", scene.packing_fraction, rule)
-
-
-# Open faces, through which particles leave and enter: requirements, and maximum number of particles.
 
 
 MOST_ATTEMPTS = 1e12
 """Maximum number of attempts to enter in the time in which a particle of the reservoir crosses the container.
 """
-_SIGMAS = 10.0  # allowance for the number of an ideal gas, in standard deviations
 
 
-def check_open_faces(scene: Scene) -> None:
-    """Raise SceneError if a scene with open faces has a feature that open faces exclude.
-
-    Only scenes with open faces are checked.
+def check_open_faces(scene: Facts) -> None:
+    """Raise SceneError if a scene with open faces has a feature that open faces exclude. Only scenes with
+    open faces are checked.
     """
     for number, reservoir in scene.faces_of(Open):
         face = f"faces.{FACES[number]}"
@@ -205,10 +217,9 @@ def check_open_faces(scene: Scene) -> None:
         _check_attempts(scene, number, reservoir)
 
 
-def _check_attempts(scene: Scene, number: int, face: Open) -> None:
-    """Raise SceneError for a reservoir whose particles attempt too often to enter.
-
-    Above this number of attempts, simulated time would practically not advance.
+def _check_attempts(scene: Facts, number: int, face: Open) -> None:
+    """Raise SceneError for a reservoir whose particles attempt too often to enter. Above this number of
+    attempts, simulated time would practically not advance.
     """
     speed = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
     if speed:
@@ -221,58 +232,54 @@ def _check_attempts(scene: Scene, number: int, face: Open) -> None:
             raise SceneError(f"faces.{FACES[number]}.activity", face.activity, rule)
 
 
-def refuse_open(scene: Scene, rule: str) -> None:
-    """Raise SceneError, with `rule` in its message, for a scene with open faces."""
-    for number, face in scene.faces_of(Open):
-        raise SceneError(f"faces.{FACES[number]}", face.kind, rule)
+# Forces along periodic axes.
 
 
-def number_density(scene: Scene, face: Open) -> float:
-    """Return the number density of an ideal gas that would be in equilibrium with a reservoir.
+_MOMENTUM = (
+    "fixed particles, interior walls across it, rough contacts with walls, or faces or walls at a temperature"
+)
+_ENERGY = "inelastic contacts, or faces or walls at a temperature"
 
-    The density is 0 for a vacuum.
+
+def check_driven(scene: Facts) -> None:
+    """Raise SceneError if a force along a periodic axis would accelerate the gas forever. The scene must have
+    a sink for the momentum that the force adds, and a sink for the energy that it adds.
     """
-    return (face.activity or 0.0) / ball_volume(scene.dimension, scene.species[0].radius)
+    for axis in scene.driven_axes:
+        for has_sink, quantity, by in (
+            (_takes_momentum(scene, axis), "momentum", _MOMENTUM),
+            (_takes_energy(scene), "energy", _ENERGY),
+        ):
+            if not has_sink:
+                rule = (
+                    f"gives energy without limit along {'xyz'[axis]}, a periodic axis, where nothing takes "
+                    f"the {quantity}: {by} would"
+                )
+                raise SceneError("gravity", scene.gravity, rule)
 
 
-def attempt_rate(scene: Scene, number: int, face: Open) -> float:
-    """Return the number of particles per time that try to enter through a face.
-
-    The rate through an open face of area A is z A (k_B T / 2 pi m)^(1/2), where z is the number density of
-    the reservoir as an ideal gas. The argument `number` is the index of the face.
+def _takes_momentum(scene: Facts, axis: int) -> bool:
+    """Return True if particles exchange momentum along a periodic axis with other objects. The other objects
+    are fixed particles, interior walls and faces of the container.
     """
-    area = scene.container.volume / scene.container.lengths[number // 2]
-    width = math.sqrt((face.temperature or 0.0) / scene.species[0].mass)
-    return number_density(scene, face) * area * width / math.sqrt(2.0 * math.pi)
+    if scene.has_fixed:
+        return True
+    length = scene.container.lengths[axis]
+    if any(wall.temperature or not _spans(wall, axis, length) for wall in scene.walls):
+        return True
+    surfaces = bool(scene.walls) or not scene.is_periodic
+    return (scene.rough and surfaces) or not all(face.smooth for face in scene.faces.values())
 
 
-def mean_count(scene: Scene) -> float:
-    """Return an upper bound of the mean number of particles between reservoirs.
+def _takes_energy(scene: Facts) -> bool:
+    """Return True if contacts lose energy, or faces or walls at a temperature exchange energy."""
+    return scene.dissipates or bool(scene.face_temperatures)
 
-    The bound is the mean number for an ideal gas at the same activity, or 0 if there is a vacuum behind every
-    open face. Particles that repel each other are fewer than particles of an ideal gas. The pressure in the
-    container is at most the pressure of the strongest reservoir. The gas is at least as hot as the coldest
-    face or wall.
+
+def _spans(wall: Wall | Plate, axis: int, length: float) -> bool:
+    """Return True if a wall spans the container along an axis. No particle then hits the ends of the wall
+    along this axis.
     """
-    reservoirs = [face for _, face in scene.faces_of(Open) if face.temperature is not None]
-    if not reservoirs:
-        return 0.0
-    pressure = max(number_density(scene, face) * (face.temperature or 0.0) for face in reservoirs)
-    return pressure / min(scene.face_temperatures) * scene.container.volume
-
-
-def capacity(scene: Scene) -> int:
-    """Return the largest number of particles that the program provides for.
-
-    Without open faces this is the number at the start. With reservoirs it is the mean number in equilibrium
-    plus 10 standard deviations; the number of particles of an ideal gas has a Poisson distribution. The
-    result never exceeds the number of particles that fit into the container.
-    """
-    mean = mean_count(scene)
-    if mean == 0.0:
-        return scene.count
-    species, d = scene.species[0], scene.dimension
-    most = scene.count + mean + _SIGMAS * math.sqrt(mean) + _SIGMAS
-    around = math.prod(length + 2.0 * species.radius for length in scene.container.lengths)
-    packed = CLOSE_PACKING[d] * around / ball_volume(d, species.radius)
-    return max(scene.count, math.ceil(min(most, packed)))
+    first, *others = wall.corners.values()
+    edges = ([b - a for a, b in zip(first, corner, strict=True)] for corner in others)
+    return any(abs(edge[axis]) >= length and not any(edge[:axis] + edge[axis + 1 :]) for edge in edges)
