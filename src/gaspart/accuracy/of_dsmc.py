@@ -52,7 +52,6 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @staticmethod
     def variants(kind: type[DSMC]) -> tuple[DSMC, ...]:
-        """Return an engine for each collision model."""
         return tuple(kind(model=model) for model in MODELS)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
@@ -72,16 +71,13 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @property
     def timed_as(self) -> str:
-        """Name of the collision model in the table of costs."""
         model = self.engine.model
         return self.engine.name if model == "boltzmann" else f"{self.engine.name} {model}"
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the step divided by the default step."""
         return (self.engine.for_scene(scene).time_step or 0.0) / self._own_step(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """Return a copy with a step in default steps."""
         return self.engine.for_scene(scene).with_step(step * self._own_step(scene))
 
     def _own_step(self, scene: Scene) -> float:
@@ -89,17 +85,14 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @property
     def limitations(self) -> str:
-        """Limitations of the model, and of all DSMC models."""
         lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
         return f"{lacks[self.engine.model]}, positions of pairs"
 
     def describe(self) -> str:
-        """Return the name with the model, and the step if it is known."""
         step = "" if self.engine.time_step is None else f", time_step {self.engine.time_step:.4g}"
         return f"{self.engine.name}, model {self.engine.model}{step}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return also the effect of a step that is longer than the default."""
         remarks, step = super().notes(scene, observable, paths), self.engine.time_step
         longer = 1.0 if step is None else step / self._own_step(scene)
         if longer >= 1.5:

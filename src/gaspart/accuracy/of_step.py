@@ -34,13 +34,9 @@ class StepAdviser(Adviser[TimeStepped]):
 
     @staticmethod
     def variants(kind: type[TimeStepped]) -> tuple[TimeStepped, ...]:
-        """Return the engine with a step that `candidate` replaces."""
         return (kind(1.0),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with the longest step that is sufficiently accurate. Raises SceneError for a gas
-        without collisions.
-        """
         conditions, initial = request.conditions, request.initial
         hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None
         square = rate_error(1.0, True, hot) if hot else 0.0
@@ -58,15 +54,12 @@ class StepAdviser(Adviser[TimeStepped]):
         return Candidate(self.engine.with_step(step), discretisation=(linear + square * step) * step)
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the step in diameters divided by the thermal speed of a plain gas."""
         return self.engine.time_step / _unit(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> TimeStepped:
-        """Return a copy with a step in the unit of `timed_step`, and a precision."""
         return replace(self.engine, time_step=step * _unit(scene), precision=precision)
 
     def describe(self) -> str:
-        """Return the name with step, precision and passes."""
         engine = self.engine
         return f"{engine.name}, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
 

@@ -121,7 +121,6 @@ class SteppedDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """Time at the end of the last completed step."""
         return self._start + self._progress * self.time_step
 
     def advance(
@@ -156,7 +155,6 @@ class SteppedDynamics(Dynamics):
         self._advance_to(target)
 
     def reset_tally(self) -> None:
-        """Reset all counters."""
         self._lost[:] = self.dissipated, self.exchanged
         for sums in self._sums().values():
             sums[...] = 0
@@ -166,12 +164,10 @@ class SteppedDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
 
@@ -190,7 +186,6 @@ class SteppedDynamics(Dynamics):
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`."""
         counts: dict[str, Any] = {"steps": self._steps - self._since} | self._counts()
         for part in self._parts:
             counts |= part.counts(self._clock)

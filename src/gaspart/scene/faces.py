@@ -251,7 +251,6 @@ class Open(Surface):
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the reservoir; () if there is no reservoir."""
         return () if self.temperature is None else (self.temperature,)
 
 

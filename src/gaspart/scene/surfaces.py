@@ -186,10 +186,6 @@ class Thermal(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name of the effect in the kernels, and the temperature.
-
-        If the temperature varies along the face, the temperature at the low end is used.
-        """
         return "thermal" if self.components == "all" else "thermal_normal", self.temperatures[0]
 
     @property
@@ -199,12 +195,10 @@ class Thermal(Surface):
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the wall, or the temperatures of its low end and its high end."""
         return tuple(self.temperature.values()) if isinstance(self.temperature, dict) else (self.temperature,)
 
     @property
     def smooth(self) -> bool:
-        """True unless all components of the velocity are drawn."""
         return self.components == "normal"
 
 
@@ -252,17 +246,14 @@ class Well(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name in the kernels of the effect of the wall behind the well, and its temperature."""
         return ("hard", 0.0) if self.temperature is None else ("thermal", self.temperature)
 
     @property
     def smooth(self) -> bool:
-        """True unless the wall behind the well is thermal."""
         return self.temperature is None
 
     @property
     def temperatures(self) -> tuple[float, ...]:
-        """Temperature of the wall behind the well; () if this wall has no temperature."""
         return () if self.temperature is None else (self.temperature,)
 
 
@@ -301,5 +292,4 @@ class Sticky(Surface):
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name of the wall's effect in the kernels, and the momentum."""
         return "sticky", self.momentum

@@ -277,7 +277,6 @@ class StressCorrelator(_Correlator):
 
     @property
     def next(self) -> int:
-        """Index of the next sample, in intervals from time 0."""
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
@@ -303,12 +302,10 @@ class StressCorrelator(_Correlator):
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues bitwise identically."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from the checkpoint of a correlator with the same settings."""
         super().restore(arrays)
         self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])
 

@@ -179,7 +179,6 @@ class Recipe(Contents):
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
     def attributes(self) -> dict[str, Any]:
-        """Return the recipe as attributes of the file, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
             "scene": dump_yaml(self.scene.to_dict()),

@@ -134,7 +134,6 @@ class DSMC(DsmcSettings):
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
     def cells_along(self, scene: Scene) -> int:
-        """Return the largest number of cells along an axis."""
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
@@ -212,7 +211,6 @@ class DSMC(DsmcSettings):
         return medium.errors(cells, step)
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return remarks about notable errors of settings and model, each a line."""
         from gaspart.engines.dsmc.cells import neglected, remarks
 
         text = neglected(self, scene)
@@ -228,14 +226,12 @@ class DSMC(DsmcSettings):
         return medium, cells_for(self, medium, step), step
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the kernels for model, steps that may adapt, and several threads."""
         from gaspart.engines.dsmc.defaults import may_speed_up
 
         paced = "-paced" if may_speed_up(scene) else ""
         return self.model + paced + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> DSMC:
-        """Return the engine with a single cell, and with the step for the full scene."""
         return self.for_scene(scene)._with(cells_per_side=1, adapts=(self.adapts_steps, False))
 
     def start(
@@ -245,7 +241,6 @@ class DSMC(DsmcSettings):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> DsmcDynamics:
-        """Prepare the engine; raises SceneError if it does not model the scene."""
         from gaspart.engines.dsmc.dynamics import DsmcDynamics
 
         return DsmcDynamics(self, scene, state, seed, tallies)

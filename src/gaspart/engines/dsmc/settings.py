@@ -59,7 +59,6 @@ class DsmcSettings(Engine):
 
     @property
     def equation(self) -> str:
-        """Kinetic equation of the model."""
         return self.model
 
     @property
@@ -74,11 +73,9 @@ class DsmcSettings(Engine):
 
     @property
     def quantum(self) -> float | None:
-        """Length of a step; None if it is not yet known."""
         return self.time_step
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features that the engine, or its collision model, does not support."""
         super().check_features(scene)
         if self.model == "enskog":
             refuse_open(scene, f"{_DILUTE}: the particles of its reservoirs have no excluded volume")

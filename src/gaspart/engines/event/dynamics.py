@@ -205,7 +205,6 @@ class EventDynamics(Dynamics):
         self._predict()
 
     def reset_tally(self) -> None:
-        """Reset all counters to zero."""
         self._tally.reset(self.time, self._clock)
 
     def _make_lists(self) -> None:
@@ -227,7 +226,6 @@ class EventDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """Present simulation time."""
         return self._start + self._clock
 
     def advance(
@@ -374,17 +372,14 @@ class EventDynamics(Dynamics):
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
 
     @property
     def dissipated(self) -> float:
-        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return self._tally.dissipated
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         return self._tally.exchanged
 
     def _present(self) -> np.ndarray:
@@ -396,7 +391,6 @@ class EventDynamics(Dynamics):
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time."""
         flights = self._present()
         state = replace(
             self._reference,
@@ -419,7 +413,6 @@ class EventDynamics(Dynamics):
         self._tally.since = time
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that the kernels change and that cannot be recomputed."""
         arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
         arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:

@@ -95,7 +95,6 @@ class OpenPart(Part):
         super().__init__(arrays, times=times)
 
     def set_clock(self, clock: float) -> None:
-        """Schedule the first attempted entry."""
         if self._reservoirs:
             schedule_first(self._reservoirs, clock)
 
@@ -106,17 +105,14 @@ class OpenPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Keep only the particles in the container, with their numbers."""
         state.numbers = np.flatnonzero(self._inside.present)
         for key in _ARRAYS:
             setattr(state, key, getattr(state, key)[state.numbers])
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         self._inside.entries[:] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the numbers of particles that entered, by the name of their field in `Tally`."""
         return {"entries": np.pad(self._inside.entries, (0, len(self._scene.walls)))}
 
 
@@ -152,7 +148,6 @@ class PistonPart(Part):
         self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 
     def set_clock(self, clock: float) -> None:
-        """Set the time to which the stored position and velocity apply."""
         self._piston.motion[kernels.PISTON_CLOCK] = clock
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
@@ -161,12 +156,10 @@ class PistonPart(Part):
         return model
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move the piston to the end of the epoch, which becomes time 0 of its clock."""
         advance_piston(self._piston.motion, self._piston.push, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the piston's position along its axis and its velocity into the state."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
         position, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
@@ -336,22 +329,18 @@ class FacesPart(Part):
 
     @property
     def stored(self) -> float:
-        """Energy of particles that are stuck to a face."""
         return float(self.arrays["held"].sum()) * self._unit_mass
 
     def write(self, state: State, clock: float) -> None:
-        """Write the energies in wells, and add the energies of particles stuck to a face."""
         state.well_energies = well_energies(self._scene, self.arrays["place"])
         if state.vibrations is not None:
             state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         if self._shear is not None:
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the tangential momentum given to faces, by the name of its field in `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

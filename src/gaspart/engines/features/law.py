@@ -74,7 +74,6 @@ class LawPart(Part):
 
     @property
     def stored(self) -> float:
-        """Total energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
         turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
@@ -82,7 +81,6 @@ class LawPart(Part):
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
 
     def write(self, state: State, clock: float) -> None:
-        """Write the spins into a state, and add the vibrational energies of fixed particles."""
         spins = self.arrays["spins"]
         state.spins = (spins[:, 2] if state.dimension == 2 else spins).copy()
         if state.vibrations is not None and "vibrations" in self.arrays:
@@ -269,11 +267,9 @@ class DurationPart(Part):
             self.arrays["inverse_mass"] = law.inverse_mass
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
 
     def counts(self, clock: float) -> dict[str, float]:
-        """Return the number of elastic contacts, and the energy that they did not dissipate."""
         kept = running_sum.net(self._duration.kept)
         return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
 
@@ -309,7 +305,6 @@ class RestWatch(Part):
 
     @property
     def at_rest(self) -> bool:
-        """True if all particles rest."""
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:

@@ -263,7 +263,6 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """Energy added by kicks since the last reset."""
         from gaspart.kernels.physics import running_sum  # importing numba takes 0.4 s
 
         return running_sum.net(self._given) * self._unit_mass
@@ -276,7 +275,6 @@ class Kicks(Part):
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
@@ -314,7 +312,6 @@ class StepKicks(Part):
         super().__init__({"given": self.given_terms})
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self.given_terms[:] = 0.0
 
     def _kicks_by(self, steps: float) -> int:

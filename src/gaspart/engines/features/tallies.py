@@ -54,11 +54,9 @@ class StressPart(TallyPart):
         super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Add the transport by the free motion of particles during the epoch."""
         add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         add_flights(self._flights, -clock, *self._masses, self.kernel)
 
@@ -69,7 +67,6 @@ class StressPart(TallyPart):
         return values(total.sums) * self._unit_mass
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self._drift)
 
 
@@ -92,19 +89,16 @@ class ShearedStressPart(StressPart):
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the transport by the free motion of particles up to the end of the epoch."""
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
         """Do nothing, because the motion starts again in the next epoch."""
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) up to this time on the epoch's clocks."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_sheared_flights(self._flights, clock, 1.0, self._model, total)
         return values(total.sums) * self._unit_mass
@@ -162,7 +156,6 @@ class ImpulsesPart(TallyPart):
         kernels.add_momenta(flights, sign, model, self.kernel._replace(sums=sums))
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
@@ -173,7 +166,6 @@ class ImpulsesPart(TallyPart):
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
@@ -209,7 +201,6 @@ class PairImpulsesPart(TallyPart):
         self._units = np.array([[unit], [unit / kernel.share]])
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0
 
     def read(self, clock: float) -> np.ndarray:
@@ -217,7 +208,6 @@ class PairImpulsesPart(TallyPart):
         return np.asarray(self._units * np.cumsum(self.kernel.sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         sums = self.read(clock)
         return {"contact_impulse_sum": sums[MEETING], "other_impulse_sum": sums[OTHERS]}
 
@@ -292,11 +282,9 @@ class EventPerAreaPart(TallyPart):
         self._scene, self._unit_mass = scene, unit_mass
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         d = self._scene.dimension
         sums = values(self.kernel.sums).reshape(2 * d, d + 1) * self._unit_mass
         return per_area_fields(sums[:, :d], sums[:, d], len(self._scene.walls))
@@ -313,6 +301,5 @@ class ThreadedPerAreaPart(Part):
         self._read = read
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         sums = self._read(self.sums["per_area"])
         return per_area_fields(sums[:, :-1], sums[:, -1], 0)

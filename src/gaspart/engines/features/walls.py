@@ -79,20 +79,16 @@ class MovingWallPart(Part):
 
     @property
     def stored(self) -> float:
-        """Kinetic energy of the wall."""
         return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
 
     def set_clock(self, clock: float) -> None:
-        """Set the time to which the stored position and velocity apply."""
         self._motion[kernels.PISTON_CLOCK] = clock
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move the wall to the end of the epoch, which becomes time 0 of its clock."""
         advance_wall(self._motion, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the wall's position along its axis and its velocity into the state."""
         motion = self._motion.copy()
         advance_wall(motion, clock)
         state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

@@ -227,7 +227,6 @@ class ImpulsesPart(TallyPart):
         return binned
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         super().reset(clock)
         self.arrays["momenta"][...] = self._momenta()
 
@@ -238,7 +237,6 @@ class ImpulsesPart(TallyPart):
         return np.asarray(self._unit_mass * below[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 

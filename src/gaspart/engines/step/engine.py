@@ -131,7 +131,6 @@ class TimeStepped(StepSettings):
         return found
 
     def remarks(self, scene: Scene) -> list[str]:
-        """Return a remark if the density at walls has a notable error."""
         from gaspart.engines.step.limits import NOTABLE, wall_density_error
 
         error = wall_density_error(self, scene)
@@ -150,7 +149,6 @@ class TimeStepped(StepSettings):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> StepDynamics:
-        """Prepare the engine; raises SceneError if the step is too long or the scene is not supported."""
         from gaspart.engines.step.dynamics import StepDynamics
 
         return StepDynamics(self, scene, state, seed, tallies)

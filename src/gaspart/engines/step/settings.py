@@ -70,7 +70,6 @@ class StepSettings(Engine):
 
     @property
     def quantum(self) -> float:
-        """Length of a step; all times are multiples of it."""
         return self.time_step
 
     def with_step(self, step: float) -> Self:
@@ -78,10 +77,8 @@ class StepSettings(Engine):
         return replace(self, time_step=step)
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the kernels for search, precision, and several threads."""
         search = "list" if self.boxes_per_side is None else "boxes"
         return f"{search}-{self.precision}" + ("-threads" if self.threads > 1 else "")
 
     def for_small_scene(self, scene: Scene) -> Self:
-        """Return the engine, with a single box if it uses boxes."""
         return self if self.boxes_per_side is None else replace(self, boxes_per_side=1)
