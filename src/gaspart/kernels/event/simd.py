@@ -131,7 +131,7 @@ def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.
     """Return one bit per particle, from an array of bytes 0 or 1."""
     mask = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
-        mark = builder.load(builder.gep(data, [index]))
+        mark = builder.trunc(builder.load(builder.gep(data, [index])), ir.IntType(WIDTH))
         mask = builder.or_(mask, builder.shl(mark, ir.IntType(WIDTH)(n)))
     return mask
 
