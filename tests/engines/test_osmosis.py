@@ -1,4 +1,4 @@
-"""Osmosis of the template: point particles exclude nothing, so that the osmotic pressure is exactly that of the solute."""
+"""Osmosis of the template: with point particles the osmotic pressure is exactly that of the large discs."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ BLOCKS, BLOCK = 40, 1500.0
 
 
 def test_the_osmotic_pressure_is_the_pressure_of_the_large_discs_alone():
-    """Points that pass the wall have one density in the free space of both sides; large discs feel only each other."""
+    """Points have one density in the free space of both sides; large discs feel only each other."""
     scene = gp.Scene.from_dict(parse_yaml(templates()["osmosis"].text))
     solute, solvent = scene.species
     scene = replace(scene, species=[solute, replace(solvent, radius=0.01)])
@@ -28,9 +28,10 @@ def test_the_osmotic_pressure_is_the_pressure_of_the_large_discs_alone():
         on_the_left.append((simulation.state.positions[solute.count :, 0] < length / 2).mean())
     left, right = np.array(given).T
     measured, error = (right - left).mean(), (right - left).std(ddof=1) / BLOCKS**0.5
-    diameter, room = 2.0 * solute.radius, length / 2 - 2.0 * solute.radius
-    density = solute.count / (room * width)
-    exact = theory.wall_pressure(length / 2 / diameter, density * diameter**2, solute.count, 2, 1)[0] / diameter**2
+    diameter = 2.0 * solute.radius
+    density = solute.count / ((length / 2 - diameter) * width)
+    side, reduced = length / 2 / diameter, density * diameter**2
+    exact = theory.wall_pressure(side, reduced, solute.count, 2, 1)[0] / diameter**2
     assert abs(measured - exact) < 4.0 * error and error < 0.04 * exact
     assert measured - density > 8.0 * error  # van 't Hoff's law alone
     free = length / 2 * width - solute.count * np.pi * solute.radius**2

@@ -107,7 +107,8 @@ def test_a_page_runs_in_a_browser(page, tmp_path):
     script = """
 await steps(70);
 await set("x_low", 3);
-return { rows: byId("meters").innerText, flags: gas.flags, over: over(), width: innerWidth, time: gas.time + elapsed };
+const time = gas.time + elapsed;
+return { rows: byId("meters").innerText, flags: gas.flags, over: over(), width: innerWidth, time };
 """
     found, lines = found_in(CHROMIUM, page, DRIVE + script, tmp_path, width=390)
     assert not lines and not found["over"] and found["width"] == 390
@@ -117,7 +118,10 @@ return { rows: byId("meters").innerText, flags: gas.flags, over: over(), width: 
 @needs_chromium
 def test_links_and_files_of_the_first_pages_open(page, tmp_path):
     script = """
-const inPage = () => [[...gas.state.positions], [...gas.state.velocities], byId("x_low").value, byId("note").textContent];
+const inPage = () => {
+  const { positions, velocities } = gas.state;
+  return [[...positions], [...velocities], byId("x_low").value, byId("note").textContent];
+};
 const give = async text => {
   const files = new DataTransfer(); files.items.add(new File([text], "gas.json"));
   byId("open").files = files.files; byId("open").onchange({ target: byId("open") }); await ready();
@@ -150,6 +154,8 @@ def test_a_broken_link_opens_the_gas_with_a_line(page, tmp_path):
     found, lines = found_in(CHROMIUM, page, script, tmp_path, fragment="#state=%7B")
     flags, note = found
     assert not lines and flags == "r" and note.startswith("this link does not fit this page")
+
+
 def test_a_page_shows_all_particles_before_it_runs(gas):
     (still,) = re.findall('<svg id="still".*?</svg>', gas.read_text(), re.DOTALL)
     assert still.count("h0") == scene_of("gas").count and 'viewBox="0 0 48 36"' in still
