@@ -103,8 +103,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     has one component, "". For a curve, value and error are root mean squares. Raises the same SceneError as
     the function of `gaspart.analysis`.
     """
-    from gaspart.analysis.frames import measure_single
-    from gaspart.analysis.run import open_run
+    from gaspart.analysis.run import measure_single, open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:
