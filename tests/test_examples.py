@@ -63,7 +63,8 @@ def test_every_public_name_is_documented():
 
 
 def test_fields_are_documented_by_their_declarations():
-    declared = [one for one in ITEMS.values() if is_dataclass(one) and "kind" in fields(one)[0].metadata]
+    classes = [one for one in ITEMS.values() if is_dataclass(one)]
+    declared = [one for one in classes if any("kind" in item.metadata for item in fields(one))]
     assert len(declared) >= 17
     for one in declared:
         text = inspect.getdoc(one)

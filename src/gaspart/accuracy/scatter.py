@@ -56,9 +56,7 @@ class Scatter:
 
 
 def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
-    """Compute the scatter of an observable between a run and runs with other seeds. Runs that start from the
-    same state have the same energy, so their scatter is 0.
-    """
+    """Compute the scatter between runs of other seeds; 0 for runs from the same state, with one energy."""
     if GIVEN_START in run.attrs:
         return Scatter()
     return start_scatter(Target(Scene.from_dict(parse_yaml(run.attrs["scene"])), observable, face))
@@ -84,9 +82,7 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Compute the standard deviation of the initial potential energy. The standard deviation for independent
-    uniform positions is reduced by a factor for the excluded volume.
-    """
+    """Compute the standard deviation of the initial potential energy, reduced for excluded volume."""
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
     for axis, pull in enumerate(scene.gravity or ()):
@@ -105,9 +101,7 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 
 
 def _compressibility(scene: Scene, kinds: list[Species]) -> float:
-    """Return the factor by which excluded volume reduces the scatter of positions. This factor is the reduced
-    compressibility of the fluid.
-    """
+    """Return the reduced compressibility, by which excluded volume reduces the scatter of positions."""
     d = scene.dimension
     filled = 0.0
     for kind in kinds:
@@ -140,9 +134,7 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 
 def _of_column(target: Target, deviation: float) -> float | None:
-    """Compute the standard deviation of an observable under gravity from hydrostatics. Return None if theory
-    does not cover the column.
-    """
+    """Compute the standard deviation of an observable under gravity from hydrostatics, or None."""
     column = gravity_column(target.scene)
     assert column is not None
     energy = column.energy_of(target.initial)

@@ -54,9 +54,8 @@ class Run(RunData):
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of the moving particles relative to the local flow or the centre of mass. If the gas
-        flows, the velocities are relative to the local flow. Otherwise they are relative to the centre of
-        mass along axes on which the momentum is conserved (see `flow`).
+        """Velocities of moving particles relative to the local flow if the gas flows, else to the centre of
+        mass.
         """
         return about_the_flow(self)
 
@@ -67,9 +66,7 @@ class Run(RunData):
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """Number of translational degrees of freedom in each frame, shape (T,). Raises SceneError if there is
-        no degree of freedom, for example for one particle in a periodic container.
-        """
+        """Translational degrees of freedom in each frame (T,); SceneError without any."""
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
         if self.flow_axes:
@@ -108,9 +105,8 @@ class Run(RunData):
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Kinetic energies relative to the flow and to rest, and degrees of freedom. The rows of the array
-        (3, T) are twice the energy relative to the flow, twice the energy relative to rest, and the degrees
-        of freedom.
+        """Twice the energy relative to the flow, twice that relative to rest, and degrees of freedom
+        (3, T).
         """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
@@ -152,8 +148,8 @@ class Run(RunData):
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if the scene has at least two particles in a periodic container. None otherwise,
-        and unless the particles are a fluid in the density range of its equation of state.
+        """Gas of at least two particles in a periodic container, as a fluid within its equation of state;
+        else None.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -183,21 +179,15 @@ class Run(RunData):
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run; None if nothing moves. Raises SceneError under the
-        conditions of `moving`.
-        """
+        """The `fluid` at the temperature of the run; None if nothing moves."""
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
-    """Return indices of the selected particles among the moving particles (M,); by default all.
-
-    species : species number, as in `Run.species`.
-    particles : particle numbers, as in the file.
-
-    Raises SceneError if both arguments are passed, if a number does not exist, and if no selected particle
-    moves.
+    """Return indices of the selected particles among the moving particles (M,); by default all. `species`:
+    species number, as in `Run.species`. `particles`: particle numbers, as in the file. Raises SceneError if
+    both arguments are passed, if a number does not exist, and if no selected particle moves.
     """
     moving = np.flatnonzero(run.moving)
     if species is not None and particles is not None:
@@ -220,9 +210,7 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError if no collision occurred in the measured part of a run. The scatter of the observable
-    would then be unknown.
-    """
+    """Raise SceneError without a collision in the measured run: the scatter would be unknown."""
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
 
@@ -238,14 +226,10 @@ def open_run(
 ) -> Iterator[Run]:
     """Open the part of a source after the time `start`. By default the first quarter of the run is discarded.
     A simulation is run again from its start to its present time. If `pairs` is True, the collisions of each
-    pair of species are counted.
-
-    sheared : True if the observable is defined in a sheared gas.
-    varying : True if the observable is defined with open faces.
-    about : see `Run`.
-
-    Raises SceneError if the observable is undefined for the scene, if there are fewer than two frames, and
-    for input that `open_trajectory` rejects.
+    pair of species are counted. `sheared`: True if the observable is defined in a sheared gas. `varying`:
+    True if the observable is defined with open faces. `about`: see `Run`. Raises SceneError if the observable
+    is undefined for the scene, if there are fewer than two frames, and for input that `open_trajectory`
+    rejects.
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
@@ -275,9 +259,7 @@ def open_run(
 
 
 def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """Run a simulation again from its start, and return its frames at equally spaced times. Raises SceneError
-    for a simulation that has not advanced.
-    """
+    """Run a simulation again and return evenly spaced frames; SceneError if it has not advanced."""
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
         raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
@@ -345,10 +327,7 @@ def measure_single(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """Return the frames of a source up to the time `end`. Without an end time, the source itself is returned.
-    If `pairs` is True, the frames of a simulation include the numbers of collisions of each pair of species.
-    Raises SceneError for fewer than two frames.
-    """
+    """Return the frames of a source up to `end`, with collisions of each pair of species if `pairs`."""
     if end is None:
         yield source
         return

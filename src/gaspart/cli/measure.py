@@ -177,10 +177,8 @@ def _measure_each(
     selection: dict[str, Any],
     field: dict[str, Any],
 ) -> Iterator[tuple[str, Observable]]:
-    """Measure each observable in one file, or as the mean over several files.
-
-    times : start and end of the time interval whose frames are used.
-    field : arguments of `gaspart.analysis.field`.
+    """Measure each observable in one file, or as the mean over several files. `times`: start and end of the
+    time interval whose frames are used. `field`: arguments of `gaspart.analysis.field`.
     """
     from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory

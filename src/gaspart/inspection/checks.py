@@ -63,10 +63,8 @@ _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None, driven: bool = False) -> list[Check]:
-    """Perform all checks of a trajectory.
-
-    tolerance : the allowed overlap, as a fraction of a diameter.
-    driven : True if something may give energy to the particles or take it.
+    """Perform all checks of a trajectory. `tolerance`: the allowed overlap, as a fraction of a diameter.
+    `driven`: True if something may give energy to the particles or take it.
     """
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames, driven)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]

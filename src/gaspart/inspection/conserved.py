@@ -83,10 +83,9 @@ DRIFT = 1e-6
 
 
 def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
-    """Check the kinetic energy, the momentum along periodic axes, and flights between frames.
-
-    driven : True if something may give energy to the particles or take it. Otherwise the energy in a file of
-        another program must not change in one direction.
+    """Check the kinetic energy, the momentum along periodic axes, and flights between frames. `driven`: True
+    if something may give energy to the particles or take it. Otherwise the energy in a file of another
+    program must not change in one direction.
     """
     names = "energy", "momentum", "flights"
     if reason := why_not_speeds(frames):
@@ -162,10 +161,8 @@ _KEY = np.sqrt([2.0, 3.0, 5.0])
 
 
 def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
-    """Return frames without copied velocities, and the first frame with reordered particles.
-
-    doubt : reason to suspect that velocities are copies.
-    identified : True if ids have restored the order.
+    """Return frames without copied velocities, and the first frame with reordered particles. `doubt`: reason
+    to suspect that velocities are copies. `identified`: True if ids have restored the order.
     """
     if frames.velocities is None or len(frames.positions) < 2 or frames.lengths_by_frame is not None:
         return frames  # in a container that changes, displacements are not compared with velocities

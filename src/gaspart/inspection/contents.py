@@ -131,9 +131,8 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
 def _wrapped(
     positions: Vectors, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...], path: str
 ) -> Rows:
-    """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
-
-    Coordinates are wrapped one axis at a time, because numpy broadcasts an axis of length 3 slowly.
+    """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes. Coordinates are
+    wrapped one axis at a time, because numpy broadcasts an axis of length 3 slowly.
     """
 
     def wrap(frame: np.ndarray, n: int) -> np.ndarray:

@@ -50,16 +50,12 @@ def read_frames(
     time_step: float | None = None,
     origin: str | tuple[float, ...] | None = None,
 ) -> Frames:
-    """Read the frames of a trajectory; the arguments take precedence over the file.
-
-    radius : radius of all particles.
-    lengths : (d,), side lengths of the container.
-    boundary : "periodic" (the default for files of other programs without a boundary), "wall", or one word
-        per axis.
-    time_step : simulated time of one step if the file counts steps (GSD), otherwise the time between frames.
-    origin : (d,), lower corner of the container, or "centre" if the origin is its middle.
-
-    Raises SceneError for a file that cannot be read, or for missing data.
+    """Read the frames of a trajectory; the arguments take precedence over the file. `radius`: radius of all
+    particles. `lengths`: (d,), side lengths of the container. `boundary`: "periodic" (the default for files
+    of other programs without a boundary), "wall", or one word per axis. `time_step`: simulated time of one
+    step if the file counts steps (GSD), otherwise the time between frames. `origin`: (d,), lower corner of
+    the container, or "centre" if the origin is its middle. Raises SceneError for a file that cannot be read,
+    or for missing data.
     """
     path, overrides = Path(path), Overrides(radius, lengths, boundary, time_step, origin)
     with _reading(path):

@@ -143,9 +143,8 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
-    """Return the fields of frame n by the names of `_NAMES`, and those of its comment.
-
-    Fields that the user passes are not read. New names of species are added to `kinds`.
+    """Return the fields of frame n by the names of `_NAMES`, and those of its comment. Fields that the user
+    passes are not read. New names of species are added to `kinds`.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _plain_columns(rows)

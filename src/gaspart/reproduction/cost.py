@@ -169,10 +169,14 @@ def budgets(path: str | Path) -> list[Budget]:
     return sorted(rows, key=lambda row: -row.seconds)
 
 
-def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
-    """Return the lines of `gaspart budget` for a config. If `target` is a CSV file, the budget is written to
-    this file, a line for each claim. Raises the same errors as `budgets`.
+def lines(path: str | Path, target: str | Path | None = None, progress: bool = False) -> list[str]:
+    """Return the lines of `gaspart budget` for a config: budgets, or the progress of the workflow.
+
+    If `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same
+    errors as `budgets`.
     """
+    if progress:
+        return _progress(path)
     rows = budgets(path)
     if target is not None:
         _write(rows, target)
@@ -184,6 +188,43 @@ def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
         text.append(f"{row.figure:26s} {row.seconds:8.1f} {row.shared:8.1f}  {counted} {length:>22s}")
         text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in row.needs if need.multiple > 1.0]
     return text
+
+
+def _progress(path: str | Path) -> list[str]:
+    """Return a line for each figure: its points that are made and left, and the CPU time of those left.
+
+    The time of a point is that of its experiment's other points, or the predicted one; or it is unknown.
+    """
+    with open_config(path) as (config, planned):
+        results = Path("results") / (config.get("run") or "")
+        left: dict[tuple[str, str], float] = {}
+        for experiment, points in planned.items():
+            times = {
+                name: _used(results, point) for name, point in points.items() if Path(point.path).exists()
+            }
+            mean = sum(times.values()) / len(times) if times else None
+            for name, point in points.items():
+                if name not in times:
+                    seconds = predicted_seconds(point) if mean is None else mean
+                    left[experiment, name] = math.nan if seconds is None else seconds
+        every = shown_points(config, planned)
+    text = [f"{'figure':26s} {'points':>8s} {'left':>6s} {'CPU s left':>12s}"]
+    rows = {"all": [*{point: None for points in every.values() for point in points}], **every}
+    for figure, points in rows.items():
+        missing = [left[point] for point in points if point in left]
+        known = sum(seconds for seconds in missing if not math.isnan(seconds))
+        unknown = sum(map(math.isnan, missing))
+        more = f", and {unknown} points of unknown time" if unknown else ""
+        text.append(f"{figure:26s} {len(points):8d} {len(missing):6d} {known:12.0f}{more}")
+    return text
+
+
+def _used(results: Path, point: Point) -> float:
+    """Return the CPU time of the job of a point that is made; 0 if its log is gone."""
+    try:
+        return point_seconds(results, (point.experiment, point.name))
+    except SceneError:
+        return 0.0
 
 
 def _write(rows: Sequence[Budget], target: str | Path) -> None:

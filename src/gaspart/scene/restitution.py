@@ -79,26 +79,12 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
-        """True if contacts are the same as in a scene without a `Restitution`.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution().smooth_and_elastic
-        True
-        """
+        """True if contacts are the same as in a scene without a `Restitution`."""
         return self.normal == 1.0 and self.tangential == -1.0
 
     @property
     def dissipative(self) -> bool:
-        """True if contacts may lose energy.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=1.0).dissipative  # perfectly rough spheres keep their energy
-        False
-        """
+        """True if contacts may lose energy."""
         return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
     def refuse_loss(self, rule: str) -> None:
@@ -113,13 +99,6 @@ class Restitution:
         ------
         SceneError
             If contacts lose energy. The message names the coefficient by which they lose it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).refuse_loss("loses energy")
-        Traceback (most recent call last):
-        gaspart.errors.SceneError: restitution.tangential = 0.5: loses energy
         """
         if self.dissipative:
             key = "normal" if self.normal < 1.0 else "tangential"
@@ -127,45 +106,27 @@ class Restitution:
 
     @property
     def rough(self) -> bool:
-        """True if contacts change spins.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).rough
-        True
-        """
+        """True if contacts change spins."""
         return self.tangential > -1.0
 
 
+@documented
 @dataclass(frozen=True)
 class Thermostat:
     """Random kicks of all particles at regular times.
 
-    The kicks add energy, so that a dissipative gas can reach a steady state [1]_.
+    The kicks add energy, so that a dissipative gas can reach a steady state (D. R. M. Williams and F. C.
+    MacKintosh, Phys. Rev. E 54, R9 (1996)).
 
-    Parameters
-    ----------
-    power : float, [energy/time]
-        Mean energy that each particle receives per unit of time.
-    interval : float, [time]
-        Time between kicks. It should be short compared with the time between contacts.
-
-    Raises
-    ------
-    SceneError
-        If a value is not positive.
-
-    Notes
-    -----
     At each multiple of `interval`, a normal random number is added to every velocity component of a particle
     of mass m. Its variance is 2 power interval/(d m). Then the same velocity is subtracted from all
     particles, so that the total momentum is conserved. For short intervals this is white noise of strength
     xi_0^2 = 2 power/(d m).
 
-    References
-    ----------
-    .. [1] D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996).
+    Raises
+    ------
+    SceneError
+        If a value is not positive.
 
     Examples
     --------
@@ -181,9 +142,11 @@ class Thermostat:
     0.1
     """
 
-    power: float = field(metadata=declare(positive("mean energy per time that a particle is given")))
+    power: float = field(
+        metadata=declare(positive("mean energy per time that a particle is given [energy/time]"))
+    )
     interval: float = field(
-        metadata=declare(positive("time between kicks: short compared with that between contacts"))
+        metadata=declare(positive("time between kicks [time]: short compared with that between contacts"))
     )
 
     def __post_init__(self) -> None:

@@ -33,10 +33,7 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face for its key or its name as a wall.
-
-    Other values are returned unchanged.
-    """
+    """Return the key of a face for its key or its name as a wall. Other values are returned unchanged."""
     return face.strip().replace(" ", "_") if isinstance(face, str) else face
 
 
@@ -49,9 +46,8 @@ def wall_of(face: Any) -> Any:
 
 @dataclass(frozen=True)
 class Surface:
-    """Kind of face. A derived class is registered by its `kind`.
-
-    `moves` is True if the face moves along its normal. Only the event-driven engine simulates such faces.
+    """Kind of face. A derived class is registered by its `kind`. `moves` is True if the face moves along its
+    normal. Only the event-driven engine simulates such faces.
     """
 
     kind: ClassVar[str]
@@ -65,9 +61,8 @@ class Surface:
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`).
-
-        The effect may depend on this one number only, which is an energy or a momentum.
+        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`). The
+        effect may depend on this one number only, which is an energy or a momentum.
         """
         return self.kind, 0.0
 

@@ -70,9 +70,7 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
     """Return the names of the cumulative sums in a file of this engine. The sums start at time 0, and each
     sum is a variable of the file. Sums that only other engines compute are omitted, because they would be
-    zero.
-
-    tallies : optional tallies of the run.
+    zero. `tallies`: optional tallies of the run.
     """
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
@@ -173,11 +171,9 @@ class Layout:
         particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """Return the bytes of a file without frames. The first attributes are `BOOKKEEPING`.
-
-        particles : radius, mass and type of each particle
-        initial : properties of the particles at time 0, in double precision, if the user supplied an initial
-            state
+        """Return the bytes of a file without frames. The first attributes are `BOOKKEEPING`. `particles`:
+        radius, mass and type of each particle. `initial`: properties of the particles at time 0, in double
+        precision, if the user supplied an initial state.
         """
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
@@ -318,12 +314,9 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
     """Return the first frame that is damaged or truncated; None if all are correct. All these frames are
-    read. Computing the CRC-32 takes about as long as copying the frames in memory.
-
-    file : descriptor
-    numbers : frames to test
-    checksum : checksum of the header, if the caller knows it. The header is long: it has three numbers for
-        each particle
+    read. Computing the CRC-32 takes about as long as copying the frames in memory. `file`: descriptor.
+    `numbers`: frames to test. `checksum`: checksum of the header, if the caller knows it. The header is long:
+    it has three numbers for each particle.
     """
     size, header_checksum = frame_bytes(header), zlib.crc32(header) if checksum is None else checksum
     at_once = max(1, _CHUNK // size)

@@ -249,9 +249,8 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return the rescaling factors (M, d) for components relative to the centre of mass.
-
-    weights : (M, 1), mass of each particle divided by the total mass.
+    """Return the rescaling factors (M, d) for components relative to the centre of mass. `weights`: (M, 1),
+    mass of each particle divided by the total mass.
     """
     count = len(weights)
     if count < 2 or not conserved.any():

@@ -284,9 +284,8 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
     """Return the checkpoint that was stored with a trajectory, or None. `header` is the header of the
     trajectory. Raises SceneError for a checkpoint that cannot be used, because it must not be replaced
-    silently by less exact data.
-
-    otherwise : words for the message that state what the user can do without the checkpoint.
+    silently by less exact data. `otherwise`: words for the message that state what the user can do without
+    the checkpoint.
     """
     try:
         return _checkpoint(checkpoint_path(path), header)
@@ -295,9 +294,7 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 
 
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable. A checkpoint is
-    unusable if it is damaged, or belongs to another run. A file of another kind is unusable, too.
-    """
+    """Read a checkpoint like `read_checkpoint`; SceneError if damaged, of another run or no checkpoint."""
     try:
         with open_regular(path) as file:
             if not _is_intact(file):  # checked here, because zipfile and numpy raise many kinds of errors
@@ -329,9 +326,7 @@ def _is_intact(file: BinaryIO) -> bool:
 
 
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
-    """Compute the checksum of a file, or of its first `size` bytes. The next read of the file starts after
-    these bytes.
-    """
+    """Compute the checksum of a file, or of its first `size` bytes, after which the next read starts."""
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)
     value = 0

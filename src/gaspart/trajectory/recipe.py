@@ -207,9 +207,8 @@ class Recipe(Contents):
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """Return the bytes before the first frame of a file that this program writes.
-
-        revision : git revision of the program; "" without a revision.
+        """Return the bytes before the first frame of a file that this program writes. `revision`: git
+        revision of the program; "" without a revision.
         """
         from gaspart.kernels.compile.sources import source_digest
 
@@ -251,9 +250,8 @@ def read_recipe(path: str | Path) -> Recipe:
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
-
-    path : path of the trajectory, for messages
+    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe. `path`: path of the
+    trajectory, for messages.
     """
     stored = file.__dict__
     try:

@@ -123,9 +123,8 @@ class Recording:
 
     def _estimate(self, frames: int, excess: float) -> float:
         """Return the time at which a run is expected to reach its accuracy. Errors decrease as 1 /
-        sqrt(time). Accuracies are tested only at certain frames.
-
-        excess : present error divided by the required error.
+        sqrt(time). Accuracies are tested only at certain frames. `excess`: present error divided by the
+        required error.
         """
         required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
         expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))

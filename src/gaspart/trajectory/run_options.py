@@ -119,13 +119,10 @@ def _declare(
     closed: bool = False,
     until: str = "",
 ) -> dict[str, Any]:
-    """Return the metadata of the field of an option.
-
-    kind : kind of the value; for an option of the command line and a key of a config, also meaning and
-        default
-    store, restore : conversions to the attribute of a file, and back
-    closed : True if open faces exclude the option, because particles are replaced
-    until : rule for the message if accuracies that end the run exclude the option
+    """Return the metadata of the field of an option. `kind`: kind of the value; for an option of the command
+    line and a key of a config, also meaning and default. `store` and `restore`: conversions to the attribute
+    of a file, and back. `closed`: True if open faces exclude the option, because particles are replaced.
+    `until`: rule for the message if accuracies that end the run exclude the option.
     """
     return {**declare(kind), "store": store, "restore": restore, "closed": closed, "until": until}
 
@@ -237,9 +234,8 @@ def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a recipe for settings in plain values. Texts and mappings are converted to
-    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations.
-
-    settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
+    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations. `settings`: fields
+    of `Recipe`, with correlations as a mapping, and texts of tallies by their names.
     """
     result = {name: value for name, value in settings.items() if name not in REQUESTED}
     if result.get("correlations") is not None:
@@ -304,9 +300,8 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Required accuracy of an observable, as stored in a file.
-
-    See `gaspart.Accuracy`, which validates observables.
+    """Required accuracy of an observable, as stored in a file. See `gaspart.Accuracy`, which validates
+    observables.
     """
 
     observable: str
@@ -357,9 +352,8 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Return the maximum number of frames, including time 0; None if there is no limit.
-
-        Raises SceneError if the maximum duration has no frame after time 0.
+        """Return the maximum number of frames, including time 0; None if there is no limit. Raises SceneError
+        if the maximum duration has no frame after time 0.
         """
         if self.at_most is None:
             return None
@@ -379,17 +373,13 @@ class Until:
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
-        """Make an instance from a mapping, the inverse of `dataclasses.asdict`.
-
-        Raises SceneError.
-        """
+        """Make an instance from a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
         return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
-        """Make an instance from a text, the inverse of `to_json`.
-
-        Raises SceneError for invalid values, and TypeError or ValueError for a text of another form.
+        """Make an instance from a text, the inverse of `to_json`. Raises SceneError for invalid values, and
+        TypeError or ValueError for a text of another form.
         """
         return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
 

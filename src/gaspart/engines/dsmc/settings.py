@@ -90,10 +90,8 @@ class DsmcSettings(Engine):
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> Self:
-        """Return a copy with these settings changed.
-
-        adapts : True if steps and cells are adapted; `adapt` is set only if this does not follow from the
-            other settings
+        """Return a copy with these settings changed. `adapts`: True if steps and cells are adapted; `adapt`
+        is set only if this does not follow from the other settings.
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):

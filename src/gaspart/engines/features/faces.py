@@ -47,9 +47,7 @@ _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "sp
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state whose arrays have an entry for every possible particle number. Entries of unused numbers
-    have the position NaN and the velocity 0. Without open faces the state is returned unchanged.
-    """
+    """Return a state with entries for every possible particle, unused ones at NaN and at rest."""
     free = scene.capacity - state.count
     if free == 0:
         return state
@@ -96,8 +94,7 @@ def crowded_error(time: float, most: int) -> SimulationError:
 
 class OpenPart(Part):
     """Open faces of a scene. The arrays contain the particles in the container, the number of entries since
-    the counters were reset, and the number and the time of the next attempted entry. This time is on the
-    clocks of the epoch.
+    the counters were reset, and the number and the time of the next attempted entry.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -150,8 +147,8 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 
 
 class PistonPart(Part):
-    """Piston of a scene. A hit on a piston can add at most twice the piston's speed to the speed of a
-    particle. The piston's speed is prescribed or results from the external pressure.
+    """Piston of a scene; a hit adds at most twice its speed, prescribed or by its pressure, to a
+    particle's.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -214,9 +211,7 @@ def motion_of(scene: Scene) -> Motion | None:
 
 
 class VibratingPart(Part):
-    """Faces with a prescribed vibration. A hit on such a face adds at most twice the speed of the face to the
-    speed of a particle.
-    """
+    """Faces with a prescribed vibration; a hit adds at most twice their speed to a particle's."""
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
@@ -224,9 +219,7 @@ class VibratingPart(Part):
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the oscillation at time 0 of the clocks. The phase is computed as the remainder of a
-        division, which is exact, so that it does not drift.
-        """
+        """Continue the oscillation at time 0 of the clocks, by an exact remainder that does not drift."""
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
         for n, face in self._faces:
@@ -246,9 +239,7 @@ WALL_DRAWS = 2
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds (2d,) and levels (2d,) of the faces for the kernels. The level is the temperature of a
-    thermal face, or the momentum of a sticky face.
-    """
+    """Return kinds (2d,) and levels (2d,) of faces: temperature of a thermal, momentum of a sticky one."""
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
     return np.array([RULES[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
@@ -290,9 +281,7 @@ def has_special_faces(scene: Scene) -> bool:
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
-    """Return the special faces as the kernels' `Faces`. Masses and energies are in the unit that `unit_mass`
-    defines.
-    """
+    """Return the special faces as the kernels' `Faces`, in units that contain `unit_mass`."""
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
     velocities, ramp = sliding_velocities(scene), ramp_of(scene)
@@ -316,9 +305,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 
 
 def face_energy(scene: Scene) -> float:
-    """Return an upper estimate of the energy that a face or wall gives to a particle. The estimate is the
-    largest energy that a particle gains from a thermal face, a thermal wall or a well.
-    """
+    """Return the largest energy that a particle gains from a thermal face or wall, or a well."""
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     fastest = max((math.hypot(*(face.velocity or ())) for _, face in scene.sliding_faces), default=0.0)
@@ -370,8 +357,8 @@ _INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """Return the interior walls, with a list of the walls near each box. The list can be used for particles
-    with radii up to `largest_radius`. A moving wall is not in the list of any box.
+    """Return the interior walls and a list of those at rest near each box, for radii up to
+    `largest_radius`.
     """
     rows, wall = wall_rows(scene)
     if moving:
