@@ -88,9 +88,7 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file during the `with` block. Raises SceneError if another process has
-    locked it.
-    """
+    """Hold the lock of a partial file in the `with` block; SceneError if another process has it."""
     try:
         with only_process(partial):
             yield
@@ -104,9 +102,7 @@ def _open_or_create(path: str, flags: int) -> int:
 
 
 def replica_path(path: Path, number: int) -> Path:
-    """Return the file of a replica of the run at a path. The replicas of `run.nc` are `run-1.nc`, `run-2.nc`
-    ...
-    """
+    """Return the file of a replica of the run at a path: `run-1.nc`, `run-2.nc` ... for `run.nc`."""
     return path.with_name(f"{path.stem}-{number}{path.suffix}")
 
 
@@ -114,9 +110,7 @@ def replica_path(path: Path, number: int) -> Path:
 
 
 def run_path(value: object) -> Path:
-    """Return an argument of a user as the path of a trajectory. Raises SceneError if the argument is not a
-    path.
-    """
+    """Return an argument of a user as the path of a trajectory; SceneError if it is no path."""
     if isinstance(value, str | os.PathLike):
         return Path(value)
     raise not_a_trajectory(value)
@@ -132,9 +126,8 @@ def not_a_trajectory(value: object) -> SceneError:
 
 @contextmanager
 def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """Open a trajectory; return the file, its header and its number of frames. Header and number of frames
-    are compared with the size of the file. Raises SceneError for a file of another kind, a truncated file, or
-    a damaged header.
+    """Open a trajectory; return the file, its header and its number of frames. Raises SceneError for a file
+    of another kind, a truncated file, or a damaged header.
     """
     try:
         with open_regular(path) as file:
@@ -166,15 +159,13 @@ def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """Open a trajectory of gaspart as a netCDF4.Dataset; the caller must close it. Raises SceneError for a
-    file of another kind, a truncated file, or a damaged header.
-    """
+    """Open a trajectory as a netCDF4.Dataset, which the caller closes; SceneError as `open_verified`."""
     return open_checked(path)[0]
 
 
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """Open a trajectory like `open_netcdf`; also return the record of its checked frames. The caller must
-    close the Dataset and the record.
+    """Open a trajectory like `open_netcdf`, with the record of its checked frames, which the caller closes
+    too.
     """
     with open_verified(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
