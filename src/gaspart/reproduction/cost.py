@@ -23,7 +23,7 @@ from gaspart.reproduction.config import open_config
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.container import Container
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
