@@ -47,7 +47,9 @@ def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) ->
     if WIDTH < ROW:
         parts = [[k - k % WIDTH + n for n in range(WIDTH)] for k in range(ROW)]
         masks = [ir.Constant(ir.VectorType(_INT, WIDTH), part) for part in parts]
-        rows = [builder.shuffle_vector(rows[k % WIDTH], rows[k % WIDTH], mask) for k, mask in enumerate(masks)]
+        rows = [
+            builder.shuffle_vector(rows[k % WIDTH], rows[k % WIDTH], mask) for k, mask in enumerate(masks)
+        ]
     return [Lanes(builder, row) for row in rows]
 
 
