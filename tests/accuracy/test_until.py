@@ -14,7 +14,7 @@ from gaspart.accuracy.reached import AccuracyStatus, Examiner, combine_replicas,
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
-from gaspart.cli.stated_run import accuracy_lines
+from gaspart.cli.options import accuracy_lines
 from gaspart.trajectory import recording
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe

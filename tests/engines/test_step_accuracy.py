@@ -6,7 +6,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 
 def rate_of(scene, engine, start):

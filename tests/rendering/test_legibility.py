@@ -5,8 +5,7 @@ import pytest
 from matplotlib.image import imread
 
 from gaspart.rendering import style
-from gaspart.rendering.key import save_key_picture
-from gaspart.rendering.legibility import flaws
+from gaspart.rendering.legibility import flaws, save_key_picture
 
 
 @pytest.fixture

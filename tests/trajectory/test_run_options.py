@@ -11,7 +11,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.cli.stated_run import run_options
+from gaspart.cli.options import run_options
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.simulate import recipes

@@ -12,12 +12,13 @@ from urllib.parse import unquote
 
 import pytest
 from crates import faults
-from workspace import ROOT
+from workspace import PARTS, ROOT, SMOKE, Workspace
 
 from gaspart.cli import main
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.metadata import METADATA
 from gaspart.reproduction.archive.writing import MANIFEST
+from gaspart.reproduction.start import start
 
 pytestmark = pytest.mark.workflow
 
@@ -123,7 +124,7 @@ def test_the_metadata_state_the_citation_and_the_digests_of_the_manifest(archive
     undescribed = manifest.keys() - described.keys() - {METADATA}
     assert {name.partition("/")[0] for name in undescribed} == {"config", "profiles", "src", "workflow"}
     run = graph["#run"]
-    assert run["instrument"]["@id"] == root["mainEntity"]["@id"] == "Snakefile"
+    assert run["instrument"]["@id"] == root["mainEntity"]["@id"] == "workflow/Snakefile"
     assert {unquote(one["@id"]) for one in run["result"]} == {
         name for name in manifest if name.startswith("results/")
     }
@@ -175,30 +176,18 @@ def test_it_is_verified_in_another_folder(archive, tmp_path, monkeypatch, capsys
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_changed_byte_of_a_table_is_found_in_a_folder_and_in_a_file(unpacked, tmp_path, capsys):
+def test_changed_missing_and_added_files_are_found(unpacked, tmp_path, capsys):
     assert lines(capsys, "verify", unpacked)[0] == 0
     flip(unpacked / TABLE)
-    expected = [f"WRONG files: changed or damaged: {TABLE}"]
-    assert lines(capsys, "verify", unpacked, "--rerun", 3) == (1, expected)
-    packed = shutil.make_archive(str(tmp_path / "packed"), "zip", unpacked)
-    assert lines(capsys, "verify", packed, "--rerun", 3) == (1, expected)
-
-
-def test_a_damaged_byte_of_the_file_itself_is_found(archive, tmp_path, capsys):
-    damaged = shutil.copy(archive, tmp_path)
-    with zipfile.ZipFile(archive) as file:
-        entry = file.getinfo(TABLE)
-    flip(tmp_path / "smoke.zip", entry.header_offset + 30 + len(TABLE) + entry.compress_size // 2)
-    assert lines(capsys, "verify", damaged) == (1, [f"WRONG files: changed or damaged: {TABLE}"])
-
-
-def test_missing_and_added_files_are_found(unpacked, capsys):
     (unpacked / "results/smoke/figures/wall_pressure.png").unlink()
     (unpacked / "results/smoke/figures/heating.png").touch()
-    code, said = lines(capsys, "verify", unpacked)
-    assert code == 1 and len(said) == 1
-    assert "missing: results/smoke/figures/wall_pressure.png" in said[0]
-    assert "not of the archive: results/smoke/figures/heating.png" in said[0]
+    packed = shutil.make_archive(str(tmp_path / "packed"), "zip", unpacked)
+    for path in (unpacked, packed):
+        code, said = lines(capsys, "verify", path, "--rerun", 3)
+        assert code == 1 and len(said) == 1
+        assert f"changed or damaged: {TABLE}" in said[0]
+        assert "missing: results/smoke/figures/wall_pressure.png" in said[0]
+        assert "not of the archive: results/smoke/figures/heating.png" in said[0]
 
 
 def test_claims_of_other_data_are_found_though_the_manifest_agrees(unpacked, capsys):
@@ -254,6 +243,36 @@ def refused(capsys, project, *options):
     return said[0]
 
 
+@pytest.mark.thorough
+def test_another_clone_starts_from_a_deposit(project, tmp_path, capsys):
+    """Timings have the same bits: they are copied, and not made."""
+    deposit = tmp_path / "deposit.zip"
+    assert main(["archive", str(project / "results/smoke"), "-o", str(deposit), "--trajectories"]) == 0
+    clone = Workspace(tmp_path / "clone")
+    for part in PARTS:
+        shutil.copytree(project / part, clone.path / part)
+    config = str(clone.path / "config/smoke.yaml")
+    flip(shutil.copy(deposit, tmp_path / "damaged.zip"), deposit.stat().st_size // 2)
+    capsys.readouterr()
+    assert start(tmp_path / "damaged.zip", config) == 1 and not (clone.path / "results").exists()
+    assert capsys.readouterr().err.count("\n") == 1
+    restore = clone.edit("config/config.yaml", "seed: 2010", "seed: 2011")
+    assert start(deposit, config) == 0
+    told = capsys.readouterr().err
+    restore()
+    assert re.search(r"^deposit.zip: \d+ points are used.*; \d+ are made, as it has none of", told)
+    assert start(deposit, config) == 0
+    assert re.fullmatch(r"deposit.zip: \d+ points are used\n", capsys.readouterr().err)
+    claims = [f"results/smoke/claims/{figure}.csv" for figure in ("virial_discs", "ideal_boxes")]
+    assert "warm" not in clone.plan(*SMOKE, "--", *claims)
+    done = clone.snakemake("--cores", "2", *SMOKE, "--", *claims)
+    assert done.returncode == 0, done.stdout[-3000:]
+    made = [path.relative_to(clone.path) for path in clone.path.glob("results/smoke/points/[a-z]*/*.nc")]
+    assert made and all(
+        (clone.path / name).read_bytes() == (project / name).read_bytes() for name in [*made, *claims]
+    )
+
+
 def test_a_run_that_is_not_complete_is_refused(project, capsys):
     results, missing = project / "results/smoke", "results/smoke/figures/wall_pressure.png"
     (project / missing).rename(project / "aside")
@@ -271,13 +290,9 @@ def test_trajectories_of_other_settings_are_refused(project, capsys):
     try:
         said = refused(capsys, project, project / "results/smoke")
         assert "run = 'smoke': is the run of 2 configs" in said and "(--config FILE)" in said
+        said = refused(capsys, project, project / "results/smoke", "--config", project / "config/config.yaml")
+        assert "run = None: must be smoke, as" in said
         said = refused(capsys, project, project / "results/smoke", "--config", other)
-        assert "replica-0.nc': was made with other settings than those of the config" in said
+        assert "was not made by the point" in said
     finally:
         other.unlink()
-
-
-def test_a_folder_without_results_is_refused(project, capsys):
-    assert "holds no results of a finished run" in refused(capsys, project, project)
-    said = refused(capsys, project, project / "results/smoke", "--config", project / "config/config.yaml")
-    assert "run = None: must be smoke, as" in said

@@ -347,8 +347,8 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
 
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
-    """Compute the theoretical density of free times, and the mean free time and path. The density is averaged
-    over each bin, shape (bins,). Return None if no theory exists.
+    """Compute the theoretical density (bins,) of free times, and their mean time and path; None without
+    theory.
     """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:

@@ -17,7 +17,7 @@ from gaspart.analysis.pairs import STRETCHES, stretches_of
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.keys.values import count_of, number
-from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.correlator import pair_names, pairs_of
 from gaspart.workers import in_threads
 
 # Density waves of a periodic container: the permitted wave vectors, and their amplitudes.

@@ -27,14 +27,14 @@ _COMMANDS = {
     "new": ("new", "write a scene file from a template"),
     "run": ("run", "run a scene and write its trajectory"),
     "resume": ("run", "finish a run that was cut short"),
-    "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
+    "info": ("check", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("view", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
     "film": ("view", "a film (.mp4, .gif) of a trajectory"),
     "films": ("view", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
     "play": ("play", "a page (.html) on which a gas runs in any browser"),
-    "collisions": ("collisions", "run a scene and write a data set of its collisions"),
+    "collisions": ("export", "run a scene and write a data set of its collisions"),
     "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
     "theory": ("theory", "values of theory, with sources"),
     "advise": ("advise", "the cheapest engine and settings for an accuracy"),
@@ -42,7 +42,7 @@ _COMMANDS = {
     "budget": ("archive", "where the time of a finished run of the workflow went, and which length suffices"),
     "archive": ("archive", "a finished run of the workflow as one file to deposit"),
     "verify": ("archive", "digests of an archive, and points simulated again"),
-    "completion": ("completion", "let a shell complete commands, options and names"),
+    "completion": ("arguments", "let a shell complete commands, options and names"),
 }
 """Commands by name: the module, which has a function add_<name>, and the line in the list of commands."""
 _WRITE_FILES = ("new", "resume")  # commands with an option `output` do this

@@ -23,9 +23,8 @@ from gaspart.cli.arguments import (
     real,
     set_command,
 )
-from gaspart.cli.engine_options import one_of
+from gaspart.cli.options import one_of, run_options
 from gaspart.cli.progress import waiting
-from gaspart.cli.stated_run import run_options
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -178,3 +178,25 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
 def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
     """Return the item of a tuple of one number; return a longer tuple unchanged."""
     return numbers[0] if len(numbers) == 1 else numbers
+
+
+# Completion of commands by a shell.
+
+
+SHELLS = ("bash", "zsh", "tcsh")
+_EXAMPLES = """examples:
+  eval "$(gaspart completion bash)"              # in this shell
+  gaspart completion bash >> ~/.bash_completion  # in all later shells"""
+
+
+def add_completion(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
+    text = "Print a script by which a shell completes commands, options and names."
+    set_command(parser, _completion, text, _EXAMPLES)
+    parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help=", ".join(SHELLS))
+
+
+def _completion(options: argparse.Namespace) -> None:
+    import shtab
+
+    print(shtab.complete(options.program, options.shell))

@@ -22,9 +22,8 @@ from gaspart.cli.arguments import (
     set_command,
     several,
 )
-from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
+from gaspart.cli.options import accuracy_lines, add_setting, as_option, engine_settings, one_of
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.cli.stated_run import accuracy_lines
 from gaspart.engines import ENGINES, engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note

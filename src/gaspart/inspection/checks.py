@@ -63,11 +63,7 @@ _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None, driven: bool = False) -> list[Check]:
-    """Perform all checks of a trajectory.
-
-    tolerance : the allowed overlap, as a fraction of a diameter.
-    driven : True if something may give energy to the particles or take it.
-    """
+    """Perform all checks, with a `tolerance` of overlaps in diameters; `driven`: energy may be exchanged."""
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames, driven)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
     if acting and not reason:  # more than elastic contacts: the equilibrium is unknown
@@ -88,9 +84,7 @@ def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     diameter = 2.0 * float(frames.radii.min())
     coarse = min(max(TOUCH, 4.0 * frames.resolution / diameter), COARSEST)
     step = frames.engine.quantum if frames.engine else None
-    if (
-        step and frames.velocities is not None
-    ):  # a pair that a step has pushed together separates in later steps
+    if step and frames.velocities is not None:  # a pair that a step pushed together separates in later ones
         coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.largest.max())) * step / diameter)
     return coarse if tolerance is None else tolerance
 
@@ -121,9 +115,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 
 
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
-    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance. Pairs
-    are counted by distance, which takes a tenth of the time of `deepest_overlap`. If there are no bounds,
-    return (0, inf).
+    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance. If
+    there are no bounds, return (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf
@@ -284,7 +277,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
         if "keep" not in data.attrs:
             frames = _frames(recipe, data)
             checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
-    unknown = "speed law", "pressure Z", "diffusion coefficient D"
+    unknown = SPEEDS[0], _PRESSURE, _DIFFUSION
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
 

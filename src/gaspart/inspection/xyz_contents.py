@@ -45,9 +45,7 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last frame. Raises SceneError for contents that cannot be checked, and
-    ValueError for other text.
-    """
+    """Read all frames, or the last frame; SceneError for unusable contents, ValueError for other text."""
     kinds: dict[str, int] = {}  # a number for each species name
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
         frames = (
@@ -101,9 +99,7 @@ def _drop_velocities(parts: list[dict]) -> str | None:
 
 
 def _add_origins(parts: list[dict]) -> None:
-    """Set the missing lower corner of a container to 0 if other frames have a corner. OVITO omits a corner at
-    0.
-    """
+    """Set a missing lower corner to 0 if other frames have one, because OVITO omits a corner at 0."""
     stated = [part["origin"] for part in parts if "origin" in part]
     if stated:
         for part in parts:
@@ -130,7 +126,7 @@ def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None
 
 
 def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    """Yield the comment of each frame, and the words of its lines. Blank lines before a frame are skipped."""
+    """Yield the comment of each frame, and the words of its lines; blank lines before it are skipped."""
     for frame, line in enumerate(line for line in lines if line.strip()):
         count = int(line)
         comment = next(lines, "")
@@ -145,9 +141,7 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
-    """Return the fields of frame n by the names of `_NAMES`, including its comment's. Fields that the user
-    passes are not read. `kinds` contains the numbers of species names; new names are added to it.
-    """
+    """Return the fields of frame n by `_NAMES`, without the user's, and its comment's; extend `kinds`."""
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _plain_columns(rows)
     if "properties" not in pairs and (sides := _plain_sides(comment)):
@@ -199,9 +193,7 @@ def _plain_sides(comment: str) -> str:
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
-    """Return the first column and the number of columns of each field that is used. The key "" has the total
-    number of columns.
-    """
+    """Return first column and number of columns of each field that is used; under "" the total number."""
     parts, first, columns = properties.split(":"), 0, {}
     if len(parts) % 3 or not all(width.isdigit() and int(width) > 0 for width in parts[2::3]):
         raise SceneError("Properties", properties, "must be of the form name:type:columns:...", str(path))
@@ -216,9 +208,7 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
 
 
 def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
-    """Return the container, boundary and time of a frame from its comment. Fields that the user passes are
-    not read. `dimension` is the number of columns of the positions.
-    """
+    """Return the container, boundary and time of a frame from its comment, without those of the user."""
     fields: dict = {}
     if "lattice" in pairs and (overrides.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
         cell = _vector(pairs, "lattice", (3, 4, 9), "--lengths X,Y[,Z]", path)
@@ -251,9 +241,7 @@ def _words(text: str) -> list[str]:
 
 
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
-    """Return the numbers of a value; their count must be one of `sizes`. The error message names an `option`
-    that can replace the value.
-    """
+    """Return the numbers of a value; if their count is none of `sizes`, the error names an `option`."""
     tokens = _words(pairs[key])
     if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
         rule = f"must be {' or '.join(map(str, dict.fromkeys(sizes)))} numbers; give {option}"

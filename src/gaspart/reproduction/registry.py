@@ -84,7 +84,7 @@ def caption(entry: Mapping[str, Any]) -> str:
 
 def validate(figure: str, entry: Mapping[str, Any], points: Sequence[Point]) -> None:
     """Apply the rules of a figure with a `kind` that go beyond the kinds of its settings. `points` are the
-    points of the figure. Raises SceneError.
+    points of the figure.
     """
     if "kind" in entry:
         own.validate(figure, entry, points)

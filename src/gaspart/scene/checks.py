@@ -7,12 +7,17 @@ import math
 from gaspart.errors import SceneError, unknown_word
 from gaspart.keys.values import finite_vector, size
 from gaspart.scene.boundaries import attempt_rate
+from gaspart.scene.container import Container
 from gaspart.scene.faces import FACE_KINDS, GRADIENT, LeesEdwards, Open, Piston, Vibrating
 from gaspart.scene.facts import Facts
 from gaspart.scene.features import EXCLUDED, FEATURES
+from gaspart.scene.species import Particle, Species
 from gaspart.scene.surfaces import FACES, Sticky, Thermal, Well
 from gaspart.scene.walls import WALL_RULE, Plate, Wall, crossed_axis, wall_kind
 
+# maximum length of the longest side, in diameters: contacts are then accurate to a thousandth of a diameter
+_RESOLVED = 1e12
+_ROOM = 1e-6  # minimum clearance of a particle between two walls, in radii
 _SUM = 1e-12  # relative tolerance for rounding of the sum of all volumes
 
 
@@ -22,6 +27,46 @@ def check_features(scene: Facts) -> None:
     for (name, other), reason in EXCLUDED.items():
         if name in present and other in present:
             raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {reason}")
+
+
+def check_room(container: Container, centres_to_walls: bool, key: str, particle: Particle | Species) -> None:
+    """Raise SceneError, with `key`, if a particle does not fit into the container. SceneError is also raised
+    for a particle that is not fixed but has no room to move, and for a particle so small that rounding would
+    hide its contacts.
+    """
+    radius = particle.largest_radius
+    shortest, longest = min(container.lengths), max(container.lengths)
+    if not centres_to_walls:
+        if 2 * radius > shortest:
+            rule = f"is too large for the container, whose shortest side is {shortest:g}"
+            raise SceneError(key, radius, rule)
+        walled = zip(container.lengths, container.periodic, strict=True)
+        narrow = any(2 * radius * (1.0 + _ROOM) > length for length, periodic in walled if not periodic)
+        if narrow and not particle.fixed:
+            rule = "leaves no room between two walls, which it would hit infinitely often in no time"
+            raise SceneError(key, radius, rule)
+    if 2 * particle.smallest_radius * _RESOLVED < longest:
+        radius = particle.smallest_radius
+        rule = f"is too small to resolve contacts in a container whose longest side is {longest:g}"
+        raise SceneError(key, radius, rule)
+
+
+def check_region(container: Container, key: str, kind: Species) -> None:
+    """Raise SceneError, with `key`, for an invalid region of a species. The region must be a box inside the
+    container that is large enough for one of its particles.
+    """
+    if kind.region is None:
+        return
+    lower, upper = (
+        finite_vector(f"{key}[{n}]", corner, container.dimension) for n, corner in enumerate(kind.region)
+    )
+    for low, high, length in zip(lower, upper, container.lengths, strict=True):
+        if low < 0.0 or high > length:
+            raise SceneError(key, kind.region, "must lie inside the container")
+        if not high - low > 2.0 * kind.largest_radius:
+            raise SceneError(
+                key, kind.region, f"has no room for a particle of radius {kind.largest_radius:g}"
+            )
 
 
 def check_packing(scene: Facts) -> None:

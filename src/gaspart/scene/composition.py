@@ -7,10 +7,9 @@ from functools import cached_property
 from typing import TypeVar
 
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import GRADIENT, LeesEdwards, Piston
-from gaspart.scene.limits import CLOSE_PACKING, ball_volume
-from gaspart.scene.restitution import Restitution
+from gaspart.scene.restitution import Restitution, Thermostat
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.scene.species import Particle, Species
 from gaspart.scene.surfaces import FACES, Sticky, Surface, Thermal
 from gaspart.scene.walls import Plate, Wall

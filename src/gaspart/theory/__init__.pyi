@@ -1,4 +1,4 @@
-from gaspart.scene.limits import CLOSE_PACKING as CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING as CLOSE_PACKING
 from gaspart.theory.diffusion import diffusion_in_cube as diffusion_in_cube
 from gaspart.theory.diffusion import enskog_mean_squared_displacement as enskog_mean_squared_displacement
 from gaspart.theory.diffusion import erpenbeck_wood_diffusion as erpenbeck_wood_diffusion

@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.scene.surfaces import Thermal
 from gaspart.state.state import State
 from gaspart.theory.columns import Column, GravityColumn, compare_columns, gravity_column

@@ -11,7 +11,7 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 # Validation of the arguments of all formulas in this package.
 

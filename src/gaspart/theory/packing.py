@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.theory.geometry import (
     Numbers,
     Values,

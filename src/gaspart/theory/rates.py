@@ -15,8 +15,8 @@ from typing import TypeAlias
 import numpy as np
 
 from gaspart.scene.boundaries import mean_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.scene.species import Particle, Species
 from gaspart.theory.discretisation import contact_values
 

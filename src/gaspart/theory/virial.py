@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 HIGHEST_ORDER = 10

@@ -11,6 +11,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -160,9 +161,7 @@ def meaning_of(name: str) -> str:
 
 
 class _Correlator:
-    """Sums over all pairs of samples up to a largest lag. The last axis of the array `earlier` contains the
-    most recent samples, one for each lag. The last axis of `sums` is the lag, too.
-    """
+    """Sums over all pairs of samples up to a largest lag, the last axis of `earlier` and `sums`."""
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
         self._earlier = np.zeros((*earlier, settings.lags + 1))
@@ -234,9 +233,7 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) for moving particles only, relative to the centre of mass. For M moving
-        particles, the result has the shape (M d,).
-        """
+        """Return values (M d,) of moving particles, from (N, d), relative to the centre of mass."""
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
         return (self._scale * (values - np.where(self._conserved, centre, 0.0))).ravel()
@@ -248,9 +245,8 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return the rescaling factors (M, d) for components relative to the centre of mass.
-
-    weights : (M, 1), mass of each particle divided by the total mass.
+    """Return rescaling factors (M, d) relative to the centre of mass; `weights` (M, 1) are parts of the total
+    mass.
     """
     count = len(weights)
     if count < 2 or not conserved.any():
@@ -317,3 +313,58 @@ def correlator_for(
     if settings.stress:
         return StressCorrelator(settings, simulation.scene.dimension)
     return Correlator(settings, simulation.scene, simulation.initial_state.masses, displacements)
+
+
+# Collisions of each pair of species, counted from recorded events.
+
+
+_NAME = "pair collisions"  # name of the array in a checkpoint
+
+
+def pairs_of(scene: Scene) -> list[tuple[int, int]]:
+    """Return the pairs of species by index, the lower first; SceneError for single particles."""
+    if scene.particles:
+        raise SceneError(
+            "particles", len(scene.particles), "excludes pairs, which are counted for species only"
+        )
+    return list(combinations_with_replacement(range(len(scene.species)), 2))
+
+
+def pair_names(scene: Scene) -> list[str]:
+    """Return the names of the pairs of species, such as "0-1"."""
+    return [f"{first}-{second}" for first, second in pairs_of(scene)]
+
+
+class PairCounter:
+    """Numbers of collisions of each pair of species since time 0, from recorded events.
+
+    counts : (pairs,), in the order of `pairs_of`.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        scene = simulation.scene
+        pairs, kinds = pairs_of(scene), len(scene.species)
+        self._number = np.zeros((kinds, kinds), dtype=np.int64)
+        for n, (first, second) in enumerate(pairs):
+            self._number[first, second] = self._number[second, first] = n
+        self._species = np.repeat(np.arange(kinds), [kind.count for kind in scene.species])
+        self.counts = np.zeros(len(pairs))
+        self._simulation = simulation
+        simulation.record_events = True
+
+    def take(self) -> None:
+        """Count the events since the last call, and discard them."""
+        particles = self._simulation.events["particles"]
+        # only pairs, without hits of faces and walls
+        species = self._species[particles[particles[:, 1] >= 0]]
+        numbers = self._number[species[:, 0], species[:, 1]]
+        self.counts += np.bincount(numbers, minlength=len(self.counts))
+        self._simulation.record_events = True  # start a new, empty list
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Return arrays from which `restore` continues."""
+        return {_NAME: self.counts}
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Continue from a checkpoint."""
+        self.counts = arrays[_NAME].copy()

@@ -11,9 +11,8 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
-from gaspart.trajectory.correlator import stress_units
+from gaspart.trajectory.correlator import pair_names, stress_units
 from gaspart.trajectory.opening import open_checked, run_path
-from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import Recipe, stored_recipe
 
 if TYPE_CHECKING:

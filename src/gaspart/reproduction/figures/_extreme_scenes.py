@@ -9,9 +9,9 @@ from functools import partial
 from typing import Any
 
 from gaspart.scene.container import Container
-from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.scene.species import Particle, Species
 
 GRAZE = 2.0**-50  # about 1e-15, by which a distance of 1 can be changed exactly

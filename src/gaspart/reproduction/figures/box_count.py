@@ -35,7 +35,7 @@ from gaspart.reproduction.figures._timings import (
 from gaspart.reproduction.figures.naive_scaling import SOURCE_COLOUR
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, merge_with_prefixes, table
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 TITLE, CHAPTER = "Gain from space partitioning", "Speed and accuracy"
 SETTINGS = {

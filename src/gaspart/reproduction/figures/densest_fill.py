@@ -19,7 +19,7 @@ from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.jobs.pack import GROWTH
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 
 TITLE, CHAPTER = "Random insertion", "Equation of state and structure"
 # Largest gap, in diameters, between two particles of a jammed packing that count as touching. Contacts at the

@@ -25,11 +25,11 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import Mixture
+from gaspart.scene.facts import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
 from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 TITLE, CHAPTER = "Mixtures", "Equation of state and structure"
 PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}

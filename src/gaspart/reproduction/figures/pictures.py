@@ -19,7 +19,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 TITLE, CHAPTER = "Pictures", "Pictures and checks"
 

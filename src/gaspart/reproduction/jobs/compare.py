@@ -47,7 +47,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `compare`. Raises SceneError."""
+    """Return the arguments of `compare`."""
     if point.engine.name != "step":
         raise point.make_error("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}

@@ -83,7 +83,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the argument of `count_instructions`. Raises SceneError."""
+    """Return the argument of `count_instructions`."""
     return {"scene": point.scene}
 
 

@@ -47,7 +47,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `echo`. Raises SceneError."""
+    """Return the arguments of `echo`."""
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 

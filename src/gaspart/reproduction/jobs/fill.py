@@ -29,7 +29,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `fill`. Raises SceneError."""
+    """Return the arguments of `fill`."""
     if "attempts" not in point.settings:
         raise point.make_error("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}

@@ -34,7 +34,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `pack`. Raises SceneError."""
+    """Return the arguments of `pack`."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
     if "growth_rate" in point.settings and "attempts" in point.settings:

@@ -17,19 +17,19 @@ from gaspart.reproduction.points.point_keys import ENGINE_KEYS, LENGTHS, SCANS
 if TYPE_CHECKING:
     from gaspart.engines import Engine
     from gaspart.reproduction.points.point import Point
-    from gaspart.scene.gas import Mixture
+    from gaspart.scene.facts import Mixture
     from gaspart.scene.scene import Scene
 
 
 def engine(point: Point) -> Engine:
-    """Return the engine with the settings of a point. Raises SceneError."""
+    """Return the engine with the settings of a point."""
     return _made(point, point.settings)
 
 
 def scan_engines(point: Point) -> list[Engine]:
     """Return the engine of a point, or an engine for each value of its scan. Scans are over time steps or
     partitions. If several values of the scan give the same partition, only one engine has it. A fractional
-    step is a fraction of the engine's default step for the scene. Raises SceneError.
+    step is a fraction of the engine's default step for the scene.
     """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
@@ -103,7 +103,7 @@ def _check(point: Point, name: str, settings: dict) -> None:
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
     """Return the settings of a point with `engine: auto`, with the selected engine. The choice is made for
     the machine of the table, so that a config has the same meaning everywhere. A length is set only if the
-    point has no length. Raises SceneError.
+    point has no length.
     """
     from gaspart.accuracy.advisers import adviser_of
     from gaspart.accuracy.plan import plan_from_table

@@ -47,7 +47,7 @@ class Job(Protocol):
         """Return the engines whose kernels the job compiles; none if particles are only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """Return the arguments of the point's function. Raises SceneError."""
+        """Return the arguments of the point's function."""
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ _NUMBERS = {"centres_to_walls", "polydispersity"}  # keys that change no kernel
 def variant(point: Point) -> str:
     """Return a text that identifies the compiled kernels of a point. The text has engine, search or
     precision, dimension, and a digest of the features of its scene. Kernels are compiled for features, not
-    for numbers. Raises SceneError.
+    for numbers.
     """
     scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]

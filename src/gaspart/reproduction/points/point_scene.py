@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gaspart.errors import SceneError, short_repr
 from gaspart.keys.values import MOST_PARTICLES
 from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
-from gaspart.scene.limits import ball_volume
-from gaspart.scene.sizes import DISTRIBUTIONS
+from gaspart.scene.sizes import DISTRIBUTIONS, ball_volume
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
@@ -36,14 +35,14 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """Return the ``Scene`` of a point. Raises SceneError."""
+    """Return the ``Scene`` of a point."""
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
     """Return the extents of a point. Three of count, radius, packing fraction and side are given, and the
     fourth is computed. A computed count is rounded to an integer. A computed side is equal on all axes. With
-    a scene file, all extents are known from the file. Raises SceneError.
+    a scene file, all extents are known from the file.
     """
     settings = point.settings
     if "scene" in settings:
