@@ -48,6 +48,11 @@ class Page(Protocol):
 class Simulation:
     """A run of a scene by an engine, which is advanced in time.
 
+    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
+    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
+    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
+    at its side of the container. Vibrating faces start at the beginning of a period.
+
     Parameters
     ----------
     scene : Scene
@@ -74,13 +79,6 @@ class Simulation:
     See Also
     --------
     run : Simulate a scene and write a trajectory.
-
-    Notes
-    -----
-    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
-    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
-    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
-    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Examples
     --------
@@ -166,16 +164,6 @@ class Simulation:
         ------
         SceneError
             If the simulation has advanced, or the new scene is impossible; nothing is changed then.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add(position=(4.0, 4.0), velocity=(1.0, 0.0), radius=0.5)
-        >>> simulation.add_random(count=20, radius=0.2, temperature=1.0)
-        >>> simulation.add_wall(start=(7.0, 1.0), end=(7.0, 8.0))
-        >>> simulation.scene.count, len(simulation.scene.walls)
-        (21, 1)
         """
         particle = gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
         self._change(self.scene.with_particles(particle))
@@ -218,6 +206,8 @@ class Simulation:
     ) -> None:
         """Advance by a duration, to a time, or by some events, whichever is reached first.
 
+        The time-stepped engine stops at the end of the last step that ends by the target time.
+
         Parameters
         ----------
         duration : float, [time], optional
@@ -236,10 +226,6 @@ class Simulation:
         SceneError
             If there is no target, or if the target is in the past or not a number. The simulation is
             unchanged in this case.
-
-        Notes
-        -----
-        The time-stepped engine stops at the end of the last step that ends by the target time.
         """
         if max_events is not None:
             max_events = count_of("max_events", max_events)
@@ -476,17 +462,6 @@ class Simulation:
         SceneError
             If the checkpoint belongs to another simulation, or if arrays are missing. The simulation is
             unchanged in this case.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> later = simulation.again()
-        >>> later.restore(simulation.checkpoint())
-        >>> later.time
-        2.0
         """
         check_identity(checkpoint, self._identity())
         self._advanced = True

@@ -109,6 +109,7 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), ordered),
         statements=statements,
         headline=page.headline(claims),
+        efforts=[f"{effort:g}" for effort in params.efforts],
         filters={key: Counter(row[key] for row in claims) for key in ("verdict", "kind")},
         states=explore.states(measured),
         engines=explore.choice_of_engine(measured),

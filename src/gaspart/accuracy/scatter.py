@@ -121,7 +121,7 @@ def _of_observable(target: Target, deviation: float) -> float:
         if target.observable == "pressure":
             return 0.0  # the pressure equals the load
         mean += (piston.pressure or 0.0) * scene.container.volume
-        power = max(power, _STRATIFIED)
+        power = max(power, _STRATIFIED, _at_piston(scene) if target.observable == "density" else 0.0)
     if not scene.gravity:
         return power * deviation / mean if mean else 0.0
     temperature = kinetic_temperature(scene, target.initial)
@@ -131,6 +131,16 @@ def _of_observable(target: Target, deviation: float) -> float:
             return scatter
     heat = (freedom + scene.count) * temperature
     return max(power, _STRATIFIED) * deviation / heat if heat else math.inf
+
+
+def _at_piston(scene: Scene) -> float:
+    """Return the change of the density near a piston, divided by the mean density and the change of energy.
+    The height h is proportional to the enthalpy, and fluctuates by h / sqrt(gamma N) at constant enthalpy
+    (points; gamma = 1 + 2 / d). So the density falls from its mean by at most sqrt(gamma N / 2 pi) / h per
+    length, where half of it is left. This half falls as 1 / h.
+    """
+    gamma = 1.0 + 2.0 / scene.dimension
+    return math.sqrt(gamma * scene.count / (2.0 * math.pi)) - 0.5
 
 
 def _of_column(target: Target, deviation: float) -> float | None:

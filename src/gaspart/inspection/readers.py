@@ -216,9 +216,7 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """Return the lower corner (d,) of the container. A file contains the part of the container up to the
-    piston, which is at its side when a run begins.
-    """
+    """Return the lower corner (d,) of the container, of which a file has the part up to the piston."""
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
         axis, high = divmod(number, 2)

@@ -16,9 +16,7 @@ exceeds it.
 
 @dataclass(frozen=True)
 class Check:
-    """Result of one check, passed or not, or None if it could not be made, and the reason. If `acts` is True,
-    forces other than elastic contacts act on the particles.
-    """
+    """Result of one check, None if it could not be made, and the reason; `acts`: by other forces."""
 
     name: str
     passed: bool | None

@@ -79,26 +79,12 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
-        """True if contacts are the same as in a scene without a `Restitution`.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution().smooth_and_elastic
-        True
-        """
+        """True if contacts are the same as in a scene without a `Restitution`."""
         return self.normal == 1.0 and self.tangential == -1.0
 
     @property
     def dissipative(self) -> bool:
-        """True if contacts may lose energy.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=1.0).dissipative  # perfectly rough spheres keep their energy
-        False
-        """
+        """True if contacts may lose energy."""
         return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
     def refuse_loss(self, rule: str) -> None:
@@ -113,13 +99,6 @@ class Restitution:
         ------
         SceneError
             If contacts lose energy. The message names the coefficient by which they lose it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).refuse_loss("loses energy")
-        Traceback (most recent call last):
-        gaspart.errors.SceneError: restitution.tangential = 0.5: loses energy
         """
         if self.dissipative:
             key = "normal" if self.normal < 1.0 else "tangential"
@@ -127,14 +106,7 @@ class Restitution:
 
     @property
     def rough(self) -> bool:
-        """True if contacts change spins.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).rough
-        True
-        """
+        """True if contacts change spins."""
         return self.tangential > -1.0
 
 

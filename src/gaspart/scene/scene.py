@@ -364,13 +364,6 @@ class Scene(Facts):
         ------
         SceneError
             If the file cannot be written.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).to_file("empty.yaml")
-        >>> print(open("empty.yaml").read().splitlines()[0])
-        container:
         """
         write_yaml(path, self.to_dict())
 

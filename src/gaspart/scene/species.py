@@ -209,26 +209,12 @@ class Species:
 
     @property
     def alike(self) -> bool:
-        """True if all particles have the same radius.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).alike
-        True
-        """
+        """True if all particles have the same radius."""
         return self.polydispersity is None
 
     @property
     def radii(self) -> np.ndarray:
-        """Radii of the particles, shape (count,).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=2, radius=0.5).radii
-        array([0.5, 0.5])
-        """
+        """Radii of the particles, shape (count,)."""
         import numpy as np
 
         if self.polydispersity is None:
@@ -238,26 +224,12 @@ class Species:
 
     @property
     def largest_radius(self) -> float:
-        """Largest radius of a particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> round(gp.Species(count=500, radius=0.5, polydispersity=0.1).largest_radius, 4)
-        0.6772
-        """
+        """Largest radius of a particle."""
         return self.radius if self.alike or not self.count else float(self.radii[0])
 
     @property
     def smallest_radius(self) -> float:
-        """Smallest radius of a particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).smallest_radius
-        0.5
-        """
+        """Smallest radius of a particle."""
         return self.radius if self.alike or not self.count else float(self.radii[-1])
 
     def total_power(self, dimension: int) -> float:
@@ -272,12 +244,6 @@ class Species:
         -------
         float
             The sum, in [length^dimension].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).total_power(2)
-        2.5
         """
         if self.alike:
             return self.count * self.radius**dimension
@@ -285,14 +251,7 @@ class Species:
 
     @property
     def vibrates(self) -> bool:
-        """True if the particles have a mode of vibration.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5, fixed=True, vibration=1.0).vibrates
-        True
-        """
+        """True if the particles have a mode of vibration."""
         return self.fixed and (self.vibration is not None or self.temperature is not None)
 
     def initial_temperature(self, dimension: int) -> float:
@@ -307,12 +266,6 @@ class Species:
         -------
         float
             The temperature, in [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5, speed=2.0).initial_temperature(2)
-        2.0
         """
         if self.temperature is not None:
             return self.temperature
@@ -376,42 +329,21 @@ class Particle:
 
     @property
     def radii(self) -> np.ndarray:
-        """Radius of the particle as an array, shape (1,).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).radii
-        array([0.5])
-        """
+        """Radius of the particle as an array, shape (1,)."""
         import numpy as np
 
         return np.array([self.radius])
 
     @property
     def largest_radius(self) -> float:
-        """Radius of the particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).largest_radius
-        0.5
-        """
+        """Radius of the particle."""
         return self.radius
 
     smallest_radius = largest_radius
 
     @property
     def vibrates(self) -> bool:
-        """True if the particle has a mode of vibration.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).vibrates
-        False
-        """
+        """True if the particle has a mode of vibration."""
         return self.vibration is not None
 
     def initial_temperature(self, dimension: int) -> float:
@@ -426,25 +358,12 @@ class Particle:
         -------
         float
             The temperature, in [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(2.0, 0.0), radius=0.5).initial_temperature(2)
-        2.0
         """
         return self.mass * sum(component**2 for component in self.velocity) / dimension
 
     @property
     def spin_vector(self) -> tuple[float, ...]:
-        """Angular velocity as a vector, shape (3,); in 2D it is normal to the plane.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).spin_vector
-        (0.0, 0.0, 0.0)
-        """
+        """Angular velocity as a vector, shape (3,); in 2D it is normal to the plane."""
         if self.spin is None:
             return 0.0, 0.0, 0.0
         return self.spin if isinstance(self.spin, tuple) else (0.0, 0.0, self.spin)

@@ -94,14 +94,7 @@ class Wall:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Coordinates of both ends of the wall, by their keys.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).corners
-        {'start': (2.0, 0.0), 'end': (2.0, 6.0)}
-        """
+        """Coordinates of both ends of the wall, by their keys."""
         return {"start": self.start, "end": self.end}
 
     def distance(self, point: tuple[float, ...]) -> float:
@@ -116,12 +109,6 @@ class Wall:
         -------
         float
             The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).distance((5.0, 3.0))
-        3.0
         """
         (ax, ay), (bx, by), (x, y) = self.start, self.end, point
         s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
@@ -183,15 +170,7 @@ class Plate:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Coordinates of the four corners, by the keys that determine them.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
-        >>> plate.corners["edges"]
-        (2.0, 4.0, 4.0)
-        """
+        """Coordinates of the four corners, by the keys that determine them."""
         first, second = self.edges
         ends = {"edges[0]": (first,), "edges[1]": (second,), "edges": (first, second)}
         far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
@@ -209,13 +188,6 @@ class Plate:
         -------
         float
             The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
-        >>> plate.distance((2.0, 7.0, 8.0))
-        5.0
         """
         away = [x - y for x, y in zip(point, self.corner, strict=True)]
         for edge in self.edges:

@@ -58,33 +58,8 @@ class DSMC(DsmcSettings):
     """
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
-        """Return a copy with cells and time step chosen for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        interval : float, [time], optional
-            Time interval that must be an integer number of steps.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Raises
-        ------
-        SceneError
-            If nothing moves, or `cells_per_side` does not fit the dimension.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> engine = gp.DSMC().for_scene(scene, interval=1.0)
-        >>> engine.time_step, engine.cells_per_side
-        (0.5, (7, 7, 7))
+        """Return a copy with cells and time step, a fraction of `interval`, for a scene. Raises SceneError if
+        nothing moves, or `cells_per_side` does not fit the dimension.
         """
         _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
@@ -93,29 +68,7 @@ class DSMC(DsmcSettings):
 
     def predictions(self, scene: Scene) -> dict[str, float]:
         """Return the relative error of the shear viscosity due to cells and steps, and of other fluxes.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        dict of str to float
-            ``viscosity_error``: relative excess of the viscosity.
-
-        Raises
-        ------
-        SceneError
-            If nothing moves, or `cells_per_side` does not fit the dimension.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.DSMC().predictions(scene)["viscosity_error"], 3)
-        0.105
+        Raises SceneError if nothing moves, or `cells_per_side` does not fit the dimension.
         """
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
@@ -123,76 +76,19 @@ class DSMC(DsmcSettings):
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
-        """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of particles with one mass.
-
-        Returns
-        -------
-        float, [mass length^(2-d)/time]
-            (A / d^2) n m nu times the sum of the squared sides of a cell, where n is the number density, nu
-            the collision rate, and A = 1/18 for spheres and 1/12 for discs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.DSMC().added_bulk_viscosity(scene), 4)
-        0.0042
+        """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone: (A / d^2) n m nu
+        times the sum of the squared sides of a cell, with the number density n, the collision rate nu, and A
+        = 1/18 for spheres and 1/12 for discs [mass length^(2-d)/time].
         """
         medium, cells, _ = self._chosen(scene)
         return medium.bulk_viscosity(cells)
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Bound the relative error of a quantity due to cells, steps and lost collisions.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        kind : {"rates", "paths", "fluxes", "walls"}
-            Quantities on which the observable depends: rates of collisions, paths of particles, or fluxes of
-            momentum and heat.
-
-        Returns
-        -------
-        float, [1]
-            The bias; see docs/dsmc.md for its parts.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> [round(gp.DSMC().bias(scene, kind), 4) for kind in ("rates", "paths", "fluxes")]
-        [0.0, 0.0334, 0.1052]
-        """
+        """Bound the relative error of a quantity due to cells, steps and lost collisions (docs/dsmc.md)."""
         return self.errors(scene).of(kind)
 
     def errors(self, scene: Scene) -> Errors:
-        """Return the parts of the errors due to cells and steps.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        Errors
-            Relative errors, see docs/dsmc.md.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> round(gp.DSMC().errors(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])).step, 4)
-        0.0021
-        """
+        """Return the parts of the relative errors due to cells and steps (docs/dsmc.md)."""
         medium, cells, step = self._chosen(scene)
         return medium.errors(cells, step)
 

@@ -48,52 +48,16 @@ class TimeStepped(StepSettings):
     """
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Bound the relative error of a quantity due to missed contacts and their order.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        kind : {"rates", "paths", "fluxes", "walls"}
-            Transfers to walls, which are "walls" and "fluxes", have an additional error.
-
-        Returns
-        -------
-        float, [1]
-            The bound; see docs/time-stepped.md for its parts.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.TimeStepped(time_step=0.1).bias(scene, "rates"), 4)
-        0.0133
+        """Bound the relative error of a quantity due to missed contacts and their order, and for "walls" and
+        "fluxes" also of transfers to walls (docs/time-stepped.md).
         """
         from gaspart.engines.step.limits import bias
 
         return bias(self, scene, kind)
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """Return bounds on relative errors that are known before a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        dict of str to float
-            ``error``: of rates. With walls also ``error_of_wall_pressures`` and
-            ``error_of_the_density_at_walls``.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> {key: round(error, 4) for key, error in gp.TimeStepped(time_step=0.02).predictions(scene).items()}
-        {'error': 0.0013, 'error_of_wall_pressures': 0.0015, 'error_of_the_density_at_walls': 0.0044}
+        """Return bounds on relative errors that are known before a run: `error` of rates, and with walls
+        `error_of_wall_pressures` and `error_of_the_density_at_walls`.
         """
         from gaspart.engines.step.limits import wall_density_error
 

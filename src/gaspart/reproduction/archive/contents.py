@@ -15,7 +15,7 @@ from gaspart.errors import SceneError
 from gaspart.files import resolve_path
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.config import check, is_own, merged_with_default
+from gaspart.reproduction.config import check, is_own, keep_efforts, merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
 from gaspart.reproduction.points.trust import require_own
@@ -29,8 +29,8 @@ def leads_out(name: str) -> bool:
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the distinct normalised paths of the scene files of all experiments in a merged config. They are
-    the texts under `scene` in points and grids.
+    """Return the distinct normalised paths of all scene files (`scene` in points and grids) of a merged
+    config.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -70,9 +70,7 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """True if `root` is a copy of the project. Otherwise `root` has another workflow, which uses this
-        project as a module.
-        """
+        """True if `root` is a copy of the project, and not a workflow that uses it as a module."""
         return (self.root / "workflow/rules/common.smk").is_file()
 
     @property
@@ -129,6 +127,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
+    keep_efforts(merged, parent / str(merged.get("points")))
     with chdir(root):  # folder from which scene files are read
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
