@@ -56,6 +56,7 @@ def test_a_sheared_gas_flows_as_its_images():
         faces={"y_high": gp.LeesEdwards(1.0)},
     )
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
+    simulation.record_events = True
     simulation.advance(duration=40.0)
     found = A.velocity_profile(simulation, "y", bins=6)
     middles = np.arange(0.5, 6.0)

@@ -193,17 +193,17 @@ def test_a_damaged_byte_of_the_file_itself_is_found(archive, tmp_path, capsys):
 
 
 def test_missing_and_added_files_are_found(unpacked, capsys):
-    (unpacked / "results/smoke/figures/wall_pressure.png").unlink()
+    (unpacked / "results/smoke/figures/reversibility.png").unlink()
     (unpacked / "results/smoke/figures/heating.png").touch()
     code, said = lines(capsys, "verify", unpacked)
     assert code == 1 and len(said) == 1
-    assert "missing: results/smoke/figures/wall_pressure.png" in said[0]
+    assert "missing: results/smoke/figures/reversibility.png" in said[0]
     assert "not of the archive: results/smoke/figures/heating.png" in said[0]
 
 
 def test_claims_of_other_data_are_found_though_the_manifest_agrees(unpacked, capsys):
     name = "results/smoke/measurements/virial_discs.nc"
-    shutil.copy(unpacked / "results/smoke/measurements/wall_pressure.nc", unpacked / name)
+    shutil.copy(unpacked / "results/smoke/measurements/reversibility.nc", unpacked / name)
     state(unpacked, name)
     code, said = lines(capsys, "verify", unpacked)
     assert code == 1

@@ -78,6 +78,7 @@ def test_the_pressure_is_the_mean_over_each_bin_of_the_weight_above():
     assert above == pytest.approx([(0.5 * 6 + 0.5 * 5 + 1.0 * 4) / 2.0, 1.25 * 4 / 2.0])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
     scene = gp.Scene(
@@ -97,6 +98,7 @@ def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
     assert float(ds["density"].sel(species=1)[0]) > 2.0 * float(ds["density"].sel(species=1)[-1])
 
 
+@pytest.mark.interpreted
 def test_fewer_frames_than_stretches_are_refused(tmp_path):
     scene = gp.Scene(gp.Container((4.0, 4.0)), [gp.Species(5, 0.1, temperature=1.0)], gravity=(0.0, -1.0))
     scene.to_file(tmp_path / "scene.yaml")

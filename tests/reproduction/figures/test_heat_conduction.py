@@ -40,6 +40,7 @@ def test_the_gap_is_where_centres_can_be():
     assert Gap.of(gas(10, 0.5)) == Gap(length=10.0, area=36.0, hot=2.0, cold=1.0, dimension=3)
 
 
+@pytest.mark.thorough
 def test_what_the_walls_give_is_what_the_particles_gain(tmp_path):
     point = run(tmp_path, gas(20, 0.1), duration=200.0, equilibration=20.0, samples=40)
     found = averages(point, Gap.of(gas(20, 0.1)), blocks=8, bins=4)
@@ -118,6 +119,7 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
         heat_conduction_gas.measure([point], {"bins": 5, "blocks": 1000, "clear": 1})
 
 
+@pytest.mark.thorough
 def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     """Whatever they began with; two temperatures give the heat capacity."""
     points = []
