@@ -205,9 +205,9 @@ def test_a_flow_that_changes_has_no_displacements_about_it(tmp_path):
     assert np.isfinite(gp.measure(path, "msd", about="rest").estimate).all()
 
 
-def test_motion_is_about_the_flow_or_about_rest(driven):
+def test_motion_is_about_the_flow_or_about_rest(couette):
     with pytest.raises(gp.SceneError, match="about = 'walls': must be one of"):
-        gp.measure(driven, "msd", about="walls")
+        gp.measure(couette, "msd", about="walls")
 
 
 @pytest.mark.interpreted

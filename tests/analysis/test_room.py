@@ -184,7 +184,7 @@ def test_bins_inside_an_obstacle_are_empty_of_room():
     lid = gp.Particle((15.0, 15.0), (0.0, 0.0), 9.0, fixed=True)
     scene = gp.Scene(gp.Container((18.0, 30.0), ("periodic", "wall")), species, [lid])
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    simulation.advance(duration=10.0)
+    simulation.advance(duration=1.0)
     found = A.profile(simulation, bins=30)
     blocked = np.flatnonzero(np.isnan(found.estimate))
     assert len(blocked) and set(blocked) <= set(range(11, 19))

@@ -120,7 +120,7 @@ def test_the_equations_of_points_do_not_depend_on_density():
     scene = plates(50, 0.2)
     paths = {}
     for engine in ENGINES:
-        with open_run(made(scene, 2.0, engine), 0.0) as run:
+        with open_run(made(scene, 0.5, engine), 0.0) as run:
             paths[engine] = plates_of(run)
     found = paths["event"]
     assert found.filled > 0.03 and found.length == pytest.approx(GAP - 2.0 * scene.largest_radius)

@@ -52,10 +52,18 @@ def compile_row(name):
 
 
 DISCS = gas(2, 100, 0.1)
+OBSTACLES = replace(
+    gas(2, 100, 0.1, "wall"), particles=[gp.Particle((4.0, 4.0), (0.0, 0.0), 0.5, fixed=True)]
+)
+PLATES = {"x_low": gp.Thermal(1.0, velocity=(0.0, -0.5)), "x_high": gp.Thermal(1.0, velocity=(0.0, 0.5))}
+GRAINS = gp.Restitution(0.9, contact_duration=0.01)
 PLAIN = [
     *((DISCS, engine) for engine in (gp.EventDriven(), gp.TimeStepped(2.0**-6), gp.DSMC(2.0**-4))),
-    (replace(DISCS, species=[*DISCS.species, gp.Species(1, 0.5, fixed=True)]), gp.EventDriven()),
+    (OBSTACLES, gp.EventDriven()),
+    (replace(OBSTACLES, restitution=GRAINS, faces={"x_low": gp.Thermal(1.0)}), gp.EventDriven()),
     *((KINDS[name].scene, gp.EventDriven()) for name in ("periodic", "mixture", "gravity", "piston")),
+    (replace(gas(2, 100, 0.1, ("wall", "periodic")), faces=PLATES), gp.EventDriven()),
+    (replace(KINDS["slit"].scene, faces={"z_low": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}), gp.DSMC(0.1)),
     (gas(3, 100, 0.3), gp.EventDriven()),
     (gas(3, 20, 0.55, arrangement="compressed"), gp.EventDriven()),
 ]
