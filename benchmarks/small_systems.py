@@ -26,7 +26,7 @@ from gaspart import theory
 from gaspart.theory import finite_size
 
 COUNTS = (3, 4, 5, 6, 8, 12, 16, 24, 32, 48, 64)
-"""Numbers of particles; two particles have a closed form (`theory.pair_contact_value`)."""
+"""Numbers of particles; two particles have a closed form (`finite_size.pair_contact_value`)."""
 LARGER = (96, 192)
 """Numbers of particles that show how the remainder of the expansion in 1/N decreases."""
 FRACTIONS = {
@@ -286,7 +286,7 @@ def diffusion(dimension: int, count: int, runs: list[dict]) -> tuple[float, floa
 
 
 def fit(path: Path) -> None:
-    """Print the coefficients of `theory.finite_size_remainder` that make the table most likely."""
+    """Print the coefficients of `finite_size.finite_size_remainder` that make the table most likely."""
     for dimension in (2, 3):
         rows = [(row, *known) for row, known in results(read(path)).items()]
         rows = [row for row in rows if row[0][0] == dimension and row[0][1] >= LEAST_FITTED]

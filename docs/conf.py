@@ -45,16 +45,27 @@ nb_execution_timeout = 600
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 
+LOOK = {
+    "font-stack": "system-ui, sans-serif",
+    "color-background-primary": "var(--page)",
+    "color-background-secondary": "var(--shade)",
+    "color-background-border": "var(--line)",
+    "color-foreground-primary": "var(--ink)",
+    "color-foreground-secondary": "var(--soft)",
+    "color-brand-primary": "var(--accent)",
+    "color-brand-content": "var(--accent)",
+}  # of style.css, which report, `view` and `play` share
 html_theme = "furo"
 html_title = f"gaspart {release}"
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {
     "navigation_with_keys": True,
-    "light_css_variables": {"font-stack": "system-ui, sans-serif"},
+    "light_css_variables": LOOK,
+    "dark_css_variables": LOOK,
 }
-html_static_path = ["static"]
-html_css_files = ["site.css"]
+html_static_path = ["static", "../src/gaspart/rendering/style.css"]
+html_css_files = ["style.css", "site.css"]
 # pages of `gaspart play`
 html_extra_path = [str(extra)] if (extra := ROOT / "results/docs/extra").is_dir() else []
 copybutton_prompt_text = "$ "

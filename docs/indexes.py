@@ -6,9 +6,9 @@ Findings are the beginnings of the captions, lines those of the docstrings and o
 import importlib
 import inspect
 import re
+import shutil
 from pathlib import Path
 
-from PIL import Image
 from sphinx.pycode import ModuleAnalyzer
 
 from gaspart.cli import lines
@@ -18,8 +18,6 @@ from gaspart.reproduction.registry import chapter, families
 from gaspart.reproduction.report.page import CHAPTERS
 
 ROOT = Path(__file__).parents[1]
-SMALL = 420, 320
-"""Largest size of a picture, in pixels."""
 _FINDING = re.compile(r"\*\*(.+?)\*\*", re.DOTALL)
 _MAY_BREAK = "\N{ZERO WIDTH SPACE}"
 _CITED = re.compile(r"\[(source [A-Z])\]")
@@ -39,7 +37,7 @@ def figures(folder):
     for title in CHAPTERS:
         shown = [figure for figure in stated if chapter(families()[figure]) == title]
         if shown:
-            text += _heading(title, "-") + ".. container:: figures\n\n"
+            text += _heading(title, "-") + ".. container:: cards\n\n"
             text += "".join(_indented(_card(figure, folder)) + "\n" for figure in shown)
     return text
 
@@ -47,16 +45,11 @@ def figures(folder):
 def _card(figure, folder):
     """A figure in the index: its picture, its name and its finding."""
     address = f"{families()[figure]}.html#figure-{figure.replace('_', '-')}"
-    small, drawn = folder / f"{figure}.webp", ROOT / f"results/figures/{figure}.png"
+    key = ROOT / f"results/figures/key/{figure}.png"
     text = ".. container:: card\n\n"
-    if drawn.exists():
-        with Image.open(drawn) as image:
-            picture = image.convert("RGB")
-        picture.thumbnail(SMALL)
-        picture.save(small)
-        text += (
-            f"   .. image:: {folder.name}/{small.name}\n      :target: {address}\n      :alt: {figure}\n\n"
-        )
+    if key.exists():
+        shutil.copyfile(key, folder / key.name)
+        text += f"   .. image:: {folder.name}/{key.name}\n      :target: {address}\n      :alt: {figure}\n\n"
     return text + f"   :ref:`{_breakable(figure)} <figure-{figure}>`\n\n   {finding(figure)}\n"
 
 

@@ -83,7 +83,7 @@ def theory_names():
 def api():
     """Pages of the public names, and their index: path -> text."""
     groups = public_names()
-    about = {"analysis": "Functions of ``gaspart.analysis``.", "theory": inspect.getdoc(theory)}
+    about = {"analysis": inspect.getdoc(analysis), "theory": inspect.getdoc(theory)}
     pages = {"api/index.rst": indexes.interface(groups)}
     for page, (title, sections) in groups.items():
         text = heading(title) + (f"{about[page]}\n\n" if page in about else "")

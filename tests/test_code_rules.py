@@ -64,7 +64,7 @@ def test_docstrings_name_functions_where_they_are():
     """A module that was joined to another leaves its name in texts, which no tool reads."""
     files = {path.relative_to(PACKAGE): path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
     at, others = homes(files)
-    text = "See `boltzmann.rough_discs`, not `homogeneous.rough_discs`."
-    assert dead_references(text, at, others) == ["homogeneous.rough_discs"]
+    text = "See `boltzmann.tagged_paths`, not `homogeneous.tagged_paths`."
+    assert dead_references(text, at, others) == ["homogeneous.tagged_paths"]
     dead = {path: names for path, text in files.items() if (names := dead_references(text, at, others))}
     assert dead == {}

@@ -12,7 +12,7 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
 
 def public_items():
     """Return the functions and classes in the stubs, and the public members of the latter, by name."""
-    items = {}
+    items = {"gaspart.analysis": gp.analysis}
     for package in (gp, gp.analysis, gp.theory):
         named = [(name, getattr(package, name)) for name in package.__all__]
         for name, item in named:
@@ -37,7 +37,7 @@ def failures(text, name):
 
 
 LONG = {f"gaspart.{name}" for name in ("play", "ImpulseTally", "PairImpulseTally", "StressTally", "compress")}
-LONG |= {"gaspart.analysis.heat_flux", "gaspart.analysis.wall_shear"}
+LONG |= {"gaspart.analysis.heat_flux"}
 """Examples that compile kernels of their own."""
 EXAMPLES = [name for name, item in ITEMS.items() if ">>>" in (inspect.getdoc(item) or "")]
 
@@ -57,5 +57,5 @@ def test_a_wrong_example_is_noticed():
 
 
 def test_every_public_name_is_documented():
-    assert len(ITEMS) > 250
+    assert len(ITEMS) > 200
     assert [name for name, item in ITEMS.items() if not inspect.getdoc(item)] == []

@@ -12,7 +12,8 @@ import gaspart as gp
 from gaspart.engines import engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import check
-from gaspart.scene.faces import Piston, Sticky, Thermal, Vibrating, Well
+from gaspart.scene.faces import Piston, Vibrating
+from gaspart.scene.surfaces import Sticky, Thermal, Well
 from gaspart.scene.walls import Plate, box_of_walls
 from gaspart.yaml_text import dump_yaml
 

@@ -11,7 +11,7 @@ from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.replicas import find_replicas, in_replicas
 from gaspart.trajectory.run import WriteOptions, examination
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until
 
 GAS = gas(3, 32, 0.2)
 ASKED = Until((gp.Accuracy("Z", 0.03),))

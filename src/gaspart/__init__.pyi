@@ -21,18 +21,18 @@ from gaspart.runs.ending import Accuracy as Accuracy
 from gaspart.runs.entry import resume as resume
 from gaspart.runs.entry import run as run
 from gaspart.scene.container import Container as Container
-from gaspart.scene.driving import Thermostat as Thermostat
 from gaspart.scene.faces import LeesEdwards as LeesEdwards
 from gaspart.scene.faces import Open as Open
 from gaspart.scene.faces import Piston as Piston
-from gaspart.scene.faces import Sticky as Sticky
-from gaspart.scene.faces import Thermal as Thermal
 from gaspart.scene.faces import Vibrating as Vibrating
-from gaspart.scene.faces import Well as Well
 from gaspart.scene.restitution import Restitution as Restitution
+from gaspart.scene.restitution import Thermostat as Thermostat
 from gaspart.scene.scene import Scene as Scene
 from gaspart.scene.species import Particle as Particle
 from gaspart.scene.species import Species as Species
+from gaspart.scene.surfaces import Sticky as Sticky
+from gaspart.scene.surfaces import Thermal as Thermal
+from gaspart.scene.surfaces import Well as Well
 from gaspart.scene.walls import Plate as Plate
 from gaspart.scene.walls import Wall as Wall
 from gaspart.simulation import Simulation as Simulation
@@ -44,7 +44,7 @@ from gaspart.state.tally import StressTally as StressTally
 from gaspart.state.tally import Tally as Tally
 from gaspart.trajectory.correlator import Correlations as Correlations
 from gaspart.trajectory.export import export as export
-from gaspart.trajectory.last_state import last_state as last_state
+from gaspart.trajectory.export import last_state as last_state
 from gaspart.trajectory.reading import open_trajectory as open_trajectory
 from gaspart.trajectory.replicas import replica_paths as replica_paths
 

@@ -37,10 +37,9 @@ def _exit(signum: int, frame: object) -> None:
 
 
 def _open_closed_streams() -> set[int]:
-    """Open the null device in place of closed standard streams (`2>&-`); return their numbers.
-
-    Otherwise the next opened file, such as a trajectory, would get the number of stderr, and would receive
-    the output of libraries.
+    """Open the null device in place of closed standard streams (`2>&-`); return their numbers. Otherwise the
+    next opened file, such as a trajectory, would get the number of stderr, and would receive the output of
+    libraries.
     """
     closed = set()
     for number in range(3):

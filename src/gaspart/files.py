@@ -52,9 +52,8 @@ def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
 
 
 def output_path(path: str | Path) -> Path:
-    """Return `path` as the path of an output file.
-
-    Raises SceneError if the path does not name a file ("", "a/", ".").
+    """Return `path` as the path of an output file. Raises SceneError if the path does not name a file ("",
+    "a/", ".").
     """
     text = os.fspath(path)
     if os.path.basename(text) in ("", ".", "..") or "\0" in text:
@@ -63,11 +62,9 @@ def output_path(path: str | Path) -> Path:
 
 
 def open_regular(path: str | Path, follow: bool = True) -> BinaryIO:
-    """Open a file for reading; all input is opened by this function.
-
-    Raises OSError for a folder, pipe, socket or device, because reading from it could block or never end.
-    Unless `follow` is True, OSError is also raised for a link. Raises ValueError for a name that contains a
-    NUL.
+    """Open a file for reading; all input is opened by this function. Raises OSError for a folder, pipe,
+    socket or device, because reading from it could block or never end. Unless `follow` is True, OSError is
+    also raised for a link. Raises ValueError for a name that contains a NUL.
     """
     _require_regular(os.stat(path, follow_symlinks=follow), path)  # opening some devices has side effects
     flags = os.O_NONBLOCK | (0 if follow else os.O_NOFOLLOW)
@@ -90,10 +87,7 @@ def _require_regular(status: os.stat_result, path: str | Path) -> None:
 
 
 def resolve_path(path: str | Path) -> Path:
-    """Return the absolute path without links, for any path.
-
-    `Path.resolve` fails for circular links.
-    """
+    """Return the absolute path without links, for any path. `Path.resolve` fails for circular links."""
     try:
         return Path(os.path.realpath(path))
     except ValueError:  # the name contains a NUL, which `open` rejects
@@ -101,9 +95,8 @@ def resolve_path(path: str | Path) -> Path:
 
 
 def is_same_file(path: str | Path, other: str | Path) -> bool:
-    """Return True if two paths refer to the same file, also through links and other spellings.
-
-    The result is False if a file does not exist.
+    """Return True if two paths refer to the same file, also through links and other spellings. The result is
+    False if a file does not exist.
     """
     try:
         return os.path.samefile(path, other)
@@ -112,11 +105,9 @@ def is_same_file(path: str | Path, other: str | Path) -> bool:
 
 
 def may_replace(path: Path, kind: FileKind | None, overwrite: bool) -> bool:
-    """Return True if `path` exists and a result may replace it.
-
-    Return False if there is no file. Raises SceneError for a folder, link or device, for a file of another
-    kind (None: any kind), and, without `overwrite`, for any file. An empty file counts as any kind. May raise
-    OSError.
+    """Return True if `path` exists and a result may replace it. Return False if there is no file. Raises
+    SceneError for a folder, link or device, for a file of another kind (None: any kind), and, without
+    `overwrite`, for any file. An empty file counts as any kind. May raise OSError.
     """
     try:
         status = path.lstat()
@@ -142,9 +133,8 @@ def place(scratch: Path, path: Path, kind: FileKind | None, overwrite: bool) -> 
 
 
 def remove_own(path: Path, kind: FileKind) -> None:
-    """Remove a file of this kind, identified by its content, and scratch files of killed processes.
-
-    No other file is removed, and no link or folder. May raise OSError.
+    """Remove a file of this kind, identified by its content, and scratch files of killed processes. No other
+    file is removed, and no link or folder. May raise OSError.
     """
     _remove_remainders(path)
     with suppress(FileNotFoundError, SceneError):
@@ -159,13 +149,10 @@ def place_folder(scratch: Path, path: Path) -> None:
 
 @contextmanager
 def writing(path: str | Path, kind: FileKind | None = None, overwrite: bool = False) -> Iterator[Path]:
-    """Provide a scratch file, and rename it to `path` atomically on success.
-
-    `may_replace` is applied before the block and again at its end. The scratch file is in the folder of
-    `path` and has a unique name. It is removed if writing fails. After a kill, the next attempt removes it.
-
-    Raises SceneError under the conditions of `output_path` and `may_replace`, and for a missing folder or a
-    full disk.
+    """Provide a scratch file, and rename it to `path` atomically on success. `may_replace` is applied before
+    the block and again at its end. The scratch file is in the folder of `path` and has a unique name. It is
+    removed if writing fails. After a kill, the next attempt removes it. Raises SceneError under the
+    conditions of `output_path` and `may_replace`, and for a missing folder or a full disk.
     """
     path = output_path(path)
     try:
@@ -231,11 +218,10 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)
 
 @contextmanager
 def only_process(path: Path, wait: bool = False) -> Iterator[None]:
-    """Hold the lock of a path, so that no other process holds it within the block.
-
-    The lock is the file `path`.lock. The system releases it whenever the process ends. On a file system
-    without locks there is a warning and no lock. Raises BlockingIOError if another process holds the lock,
-    unless `wait` is set. Raises SceneError if a file of this name is not a lock. May raise OSError.
+    """Hold the lock of a path, so that no other process holds it within the block. The lock is the file
+    `path`.lock. The system releases it whenever the process ends. On a file system without locks there is a
+    warning and no lock. Raises BlockingIOError if another process holds the lock, unless `wait` is set.
+    Raises SceneError if a file of this name is not a lock. May raise OSError.
     """
     file = path.with_name(f"{path.name}.lock")
     may_replace(file, _LOCK, overwrite=True)

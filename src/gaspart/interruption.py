@@ -46,11 +46,10 @@ class Deferral:
         self.pending, self.since = signum, time.monotonic()
 
     def deliver(self) -> None:
-        """Deliver the waiting signal, if there is one.
-
-        A process of gaspart then ends. Elsewhere the program's own handler is called: Python's handler raises
-        KeyboardInterrupt, and SIGTERM ends the process unless it is handled. If the handler returns, this
-        method also returns, and the work continues.
+        """Deliver the waiting signal, if there is one. A process of gaspart then ends. Elsewhere the
+        program's own handler is called: Python's handler raises KeyboardInterrupt, and SIGTERM ends the
+        process unless it is handled. If the handler returns, this method also returns, and the work
+        continues.
         """
         signum, self.pending = self.pending, None
         if signum is None:
@@ -82,10 +81,9 @@ _process = _Process()
 
 
 def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
-    """End this process at SIGINT and SIGTERM with exit code 130 or 143 and one line.
-
-    No scratch files are left. A second call replaces `announce`. Signals that are ignored remain ignored, for
-    example in a background process of a shell script. Only the main thread may call this function.
+    """End this process at SIGINT and SIGTERM with exit code 130 or 143 and one line. No scratch files are
+    left. A second call replaces `announce`. Signals that are ignored remain ignored, for example in a
+    background process of a shell script. Only the main thread may call this function.
 
     announce : function that prints the line, by default to stderr
     """
@@ -115,10 +113,9 @@ def _watch(reader: int) -> None:
 
 
 def _defer(signum: int) -> bool:
-    """Return True if a signal can wait.
-
-    A second signal takes effect at once, because files are always resumable. An exception is a second signal
-    that arrives together with the first one, for example from a terminal and a parent process.
+    """Return True if a signal can wait. A second signal takes effect at once, because files are always
+    resumable. An exception is a second signal that arrives together with the first one, for example from a
+    terminal and a parent process.
     """
     with _process.lock:
         deferral = _process.deferral
@@ -185,10 +182,8 @@ def scratch_folder() -> Iterator[Path]:
 
 @contextmanager
 def prevent_interruption() -> Iterator[None]:
-    """Defer signals to the end of this block if their handlers might raise within it.
-
-    This is for other programs, such as a notebook. In a process of gaspart, signals still end the process at
-    once.
+    """Defer signals to the end of this block if their handlers might raise within it. This is for other
+    programs, such as a notebook. In a process of gaspart, signals still end the process at once.
     """
     if _process.watched:
         yield
@@ -199,10 +194,8 @@ def prevent_interruption() -> Iterator[None]:
 
 @contextmanager
 def defer_signals() -> Iterator[Deferral]:
-    """Defer signals until `Deferral.deliver` or the end of the block.
-
-    Nothing is changed outside of the main thread, where Python calls no handlers, and for handlers that were
-    not installed by Python.
+    """Defer signals until `Deferral.deliver` or the end of the block. Nothing is changed outside of the main
+    thread, where Python calls no handlers, and for handlers that were not installed by Python.
     """
     deferral = Deferral()
     if _process.watched:

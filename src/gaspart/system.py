@@ -62,9 +62,8 @@ def is_running(process: int) -> bool:
 
 
 def python_with_this_package(code: str) -> list[str]:
-    """Return arguments of the interpreter that run code with this copy of the package.
-
-    Nothing is imported from the working folder (-P), where a user's file may have the name of a module.
+    """Return arguments of the interpreter that run code with this copy of the package. Nothing is imported
+    from the working folder (-P), where a user's file may have the name of a module.
     """
     folder = str(Path(__file__).parents[1])
     found = f"import sys; sys.path.insert(0, {folder!r}); import gaspart; del sys.path[0]"
@@ -72,28 +71,24 @@ def python_with_this_package(code: str) -> list[str]:
 
 
 def descriptor_path(file: IO[bytes]) -> str:
-    """Return an ASCII path of an open file, for libraries that accept only UTF-8 names.
-
-    If the system has no such path, return the path of the file itself.
+    """Return an ASCII path of an open file, for libraries that accept only UTF-8 names. If the system has no
+    such path, return the path of the file itself.
     """
     path = f"/proc/self/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def path_for_others(file: IO[bytes]) -> str:
-    """Return a path with which another process can open a file that this process has open.
-
-    The path remains valid if the file is renamed or removed. If the system has no such path, return the name
-    of the file.
+    """Return a path with which another process can open a file that this process has open. The path remains
+    valid if the file is renamed or removed. If the system has no such path, return the name of the file.
     """
     path = f"/proc/{os.getpid()}/fd/{file.fileno()}"
     return path if os.path.exists(path) else str(file.name)
 
 
 def rename_to_new(old: Path, new: Path) -> None:
-    """Rename a file or folder without replacing an existing one.
-
-    Raises FileExistsError if the path exists.
+    """Rename a file or folder without replacing an existing one. Raises FileExistsError if the path
+    exists.
     """
     rename = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if rename and rename(_HERE, os.fsencode(old), _HERE, os.fsencode(new), _NO_REPLACE) == 0:

@@ -40,9 +40,8 @@ class Lost:
 
 
 def in_threads(function: Callable[[Any], Any], items: Iterable[Any], threads: int) -> list[Any]:
-    """Return the results of a function for all items, in their order.
-
-    Threads speed up functions that mostly run kernels, because kernels release the interpreter lock.
+    """Return the results of a function for all items, in their order. Threads speed up functions that mostly
+    run kernels, because kernels release the interpreter lock.
     """
     if threads == 1:
         return [function(item) for item in items]
@@ -57,11 +56,10 @@ def in_processes(
     finished: Callable[[int, Any], None],
     received: Callable[[int, Any], None] | None = None,
 ) -> None:
-    """Call a function of a module in several processes at the same time.
-
-    The call is function(send, *arguments). A signal takes effect after all calls have written a checkpoint
-    and ended. If the caller's signal handler returns, the calls are started again. A SceneError or
-    SimulationError of a call is raised after all other calls have ended.
+    """Call a function of a module in several processes at the same time. The call is function(send,
+    *arguments). A signal takes effect after all calls have written a checkpoint and ended. If the caller's
+    signal handler returns, the calls are started again. A SceneError or SimulationError of a call is raised
+    after all other calls have ended.
 
     calls : arguments of each call
     workers : number of processes at the same time

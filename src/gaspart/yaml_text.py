@@ -31,9 +31,8 @@ _MERGE = "tag:yaml.org,2002:merge"
 
 
 def read_yaml(path: str | Path) -> Any:
-    """Return the content of a YAML file.
-
-    If the file cannot be read, raises SceneError that names the file.
+    """Return the content of a YAML file. If the file cannot be read, raises SceneError that names
+    the file.
     """
     try:
         with open_regular(os.fspath(path)) as file:  # not Path, which accepts `file.yaml/`
@@ -48,10 +47,7 @@ def read_yaml(path: str | Path) -> Any:
 
 
 def parse_yaml(text: str, name: str = "YAML") -> Any:
-    """Return the content of a YAML text.
-
-    Raises SceneError that states `name`, line and column.
-    """
+    """Return the content of a YAML text. Raises SceneError that states `name`, line and column."""
     import yaml
 
     if not isinstance(text, str):
@@ -93,10 +89,7 @@ def is_exponential(text: str) -> bool:
 
 
 def _with_exponents(base: Any) -> Any:
-    """Return a loader or dumper that treats 1e3 and 1.5e3 as numbers.
-
-    In YAML 1.1 they are text.
-    """
+    """Return a loader or dumper that treats 1e3 and 1.5e3 as numbers. In YAML 1.1 they are text."""
     subclass: Any = type("WithExponents", (base,), {})
     subclass.add_implicit_resolver(_SCALARS[-1], _NUMBERS, list("-+.0123456789"))
     return subclass

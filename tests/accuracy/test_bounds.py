@@ -16,6 +16,7 @@ from gaspart.accuracy.target import Target
 from gaspart.state.initial import initial_state
 from gaspart.theory.columns import gravity_column
 from gaspart.theory.conditions import even_conditions, known_conditions
+from gaspart.theory.gravity import ideal_mean_height
 
 SLIT = ("periodic", "periodic", "wall")
 
@@ -156,7 +157,7 @@ def test_a_column_has_the_temperature_of_its_energy():
     column, state = gravity_column(scene), initial_state(scene, 0)
     energy = column.energy_of(state)
     real, ideal = (column.of_energy(energy, points) for points in (False, True))
-    mean = theory.ideal_mean_height(103.7, 0.1 / ideal.temperature)
+    mean = ideal_mean_height(103.7, 0.1 / ideal.temperature)
     assert 400.0 * (1.5 * ideal.temperature + 0.1 * mean) == pytest.approx(energy, rel=2e-3)
     assert real.energy == pytest.approx(energy, rel=1e-6) and real.temperature < ideal.temperature
     weight = 400 * 0.1 / 100.0

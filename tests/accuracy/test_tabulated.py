@@ -12,6 +12,7 @@ from gaspart.accuracy import tabulated
 from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import fluid_option
 from gaspart.scene.gas import Gas
+from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
 from gaspart.theory.discretisation import contact_values
 
 
@@ -47,7 +48,7 @@ def test_the_enskog_model_errs_by_the_contact_value_that_its_engine_has(dimensio
 
 def test_both_models_lack_the_memory_of_collisions_in_d():
     ratio = float(theory.erpenbeck_wood_ratio(0.3))
-    exact = 1.0 - 1.0 / ratio + theory.ERPENBECK_WOOD_UNCERTAINTY
+    exact = 1.0 - 1.0 / ratio + ERPENBECK_WOOD_UNCERTAINTY
     assert tabulated.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
     assert tabulated.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
     assert tabulated.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D

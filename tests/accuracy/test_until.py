@@ -14,11 +14,11 @@ from gaspart.accuracy.reached import AccuracyStatus, Examiner, combine_replicas,
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.analysis.statistics.blocks import ORDER
-from gaspart.cli.stated_run import accuracy_lines
+from gaspart.cli.options import accuracy_lines
 from gaspart.trajectory import recording
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe
-from gaspart.trajectory.until import examined_before, examined_frames, is_examined
+from gaspart.trajectory.run_options import examined_before, examined_frames, is_examined
 
 RUNS = 2000
 COUNTS = [64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536]

@@ -21,7 +21,7 @@ from gaspart.analysis.impulses import (
 )
 from gaspart.analysis.run import open_run
 from gaspart.analysis.series import face_pressures
-from gaspart.cli.stated_run import run_options
+from gaspart.cli.options import run_options
 from gaspart.runs.ending import Accuracy
 from gaspart.state.tally import ImpulseTally
 from gaspart.trajectory.reading import open_trajectory

@@ -6,7 +6,7 @@ import pytest
 import gaspart as gp
 from gaspart.analysis.pairs import STRETCHES, g_by_impulses, mixed_g, radial_distribution, shell_volumes
 from gaspart.analysis.run import open_run
-from gaspart.cli.stated_run import run_options
+from gaspart.cli.options import run_options
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import read_recipe
 

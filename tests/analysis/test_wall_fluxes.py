@@ -12,7 +12,7 @@ from gaspart.analysis.expected.flows import plates_of
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
-from gaspart.theory.heat import INTERPOLATED
+from gaspart.theory.heat import INTERPOLATED, dilute_fourier_flux
 
 A = gp.analysis
 GAP, SIDE = 10.0, 4.0
@@ -76,7 +76,7 @@ def test_heat_of_a_fluid():
     found = A.heat_flux(made(scene, 1200.0))  # 7 times of the conduction of heat
     assert "jumps" in found.attrs["source"] and (off(found) < 3.0).all()
     diameter = 2.0 * scene.largest_radius
-    without = gp.theory.dilute_fourier_flux(GAP, 2.0, 1.0, diameter)
+    without = dilute_fourier_flux(GAP, 2.0, 1.0, diameter)
     assert float(found.theory[1]) < 0.85 * without
     assert float(found.error[1]) < 0.05 * without
 

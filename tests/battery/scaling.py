@@ -8,7 +8,7 @@ from battery.units import Powers, powers_of
 
 import gaspart as gp
 from gaspart.engines import engine_from_dict, engine_to_dict
-from gaspart.scene.faces import FACES
+from gaspart.scene.surfaces import FACES
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 UNITS = {"mass": 2.0**4, "length": 2.0**-3, "time": 2.0**2}

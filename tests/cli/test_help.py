@@ -9,7 +9,7 @@ import pytest
 
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli import _COMMANDS, commands, main
-from gaspart.cli.engine_options import engine_settings
+from gaspart.cli.options import engine_settings
 
 
 @pytest.mark.parametrize("name", commands())

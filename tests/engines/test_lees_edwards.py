@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.scene.shear import flow
+from gaspart.scene.boundaries import flow
 
 SEARCHES = {
     "direct": gp.EventDriven(search="direct"),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 
 EVENT = gp.EventDriven()
 WALL_NUMBER = 4

@@ -319,7 +319,9 @@ def test_more_passes_find_what_one_misses():
 
 
 @pytest.mark.interpreted
-@pytest.mark.parametrize(("count", "eta", "time_step"), [(100, 0.01, 0.6), (200, 0.4, 0.5)])
+@pytest.mark.parametrize(
+    ("count", "eta", "time_step"), [(100, 0.01, 0.6), (200, 0.4, 0.5), (32, 0.724, 0.014)]
+)
 def test_a_step_that_is_too_long_is_refused(count, eta, time_step):
     with pytest.raises(gp.SceneError, match=r"time_step = .* a step of \S+ would do") as refused:
         gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(time_step), seed=1)

@@ -31,11 +31,11 @@ def crystal_z(count, diameter, lengths):
     """Return Z of a crystal of spheres near close packing, and its error.
 
     Z = 3 / alpha + 2.56, alpha = V / V_0 - 1 (Alder, Hoover and Young, J. Chem. Phys. 49, 3688 (1968)), of
-    3 (N - 1) degrees of freedom.
+    3 (N - 1) degrees of freedom. The error is above the unknown order 1 / N of the constant, 2.56 / 32.
     """
     packed = count * diameter**3 / math.sqrt(2.0)
     alpha = float(np.prod(lengths)) / packed - 1.0
-    return (1.0 - 1.0 / count) * 3.0 / alpha + 2.56, 1.0
+    return (1.0 - 1.0 / count) * 3.0 / alpha + 2.56, 0.2
 
 
 def dilute_transport(density, diameter, temperature, mass=1.0):

@@ -149,6 +149,18 @@ class Kind:
         return bool((self.case.box.lengths / largest).prod() > 1e5) and not self.points
 
     @property
+    def packed(self):
+        """Packing fraction of the moving bodies, as a part of close packing."""
+        filled = sum(group.count * group.radius**self.dimension for group in self.case.groups)
+        close = {2: math.sqrt(12.0), 3: math.sqrt(32.0)}[self.dimension]
+        return close * filled / float(self.case.box.lengths.prod())
+
+    @property
+    def solid(self):
+        """True for a crystal, in which each body stays in its place."""
+        return self.packed > 0.9
+
+    @property
     def integrable(self):
         """True if each body keeps its speed for ever, so that means over time are those of its start."""
         return self.points and not self.exchanges

@@ -19,6 +19,8 @@ SEED = 7
 LAGS = 8
 STEP = 0.02
 """Distance of a step in diameters: one contact in 4000 is missed."""
+GAP = 0.25
+"""Distance of a step in mean gaps between bodies: about one contact in two steps."""
 MOST_STEPS = 1e6
 """Steps of a run, at most."""
 IMPULSE_BINS = 40
@@ -72,13 +74,16 @@ def refusal(*run):
 
 
 def time_step(kind):
-    """Return a step in which the fastest pair moves by the part `STEP` of its diameter."""
+    """Return a step in which the fastest pair moves by the part `STEP` of its diameter, or `GAP` of a gap."""
     sizes = [group for group in kind.case.groups if group.radius > FREE]
+    if not sizes:
+        return kind.run["interval"] / 8.0
+    part = min(STEP, GAP * (kind.packed ** (-1.0 / kind.dimension) - 1.0))
     solid = kind.temperature ** -0.5 * min(
         (one.radius + other.radius) / math.sqrt(1.0 / one.mass + 1.0 / other.mass)
         for one in sizes for other in sizes
-    ) if sizes else math.inf  # fmt: skip
-    return min(STEP * solid, kind.run["interval"] / 8.0)
+    )  # fmt: skip
+    return min(part * solid, kind.run["interval"] / 8.0)
 
 
 def options(kind, scene, engine):

@@ -42,6 +42,12 @@ FAINT = 1e-3
 """Part of the largest force that a few hits give."""
 EQUAL = 1e-6
 """Relative difference of values without an error."""
+STATED = {
+    **dict.fromkeys(("collision_rate", "pair_rates", "contact_values", "Z", "pressure_tensor"), "error"),
+    **dict.fromkeys(("pressure", "force"), "error_of_wall_pressures"),
+    "density": "error_of_the_density_at_walls",
+}
+"""Observable -> prediction of an engine that bounds its relative error."""
 
 
 @dataclass(frozen=True)
@@ -196,10 +202,9 @@ def is_hardly_hit(observable, result, part):
 
 
 def stated_error(observable, kind, engine):
-    """Return the relative error at walls that an engine states before a run: a bound."""
+    """Return the relative error of rates, and at walls, that an engine states before a run: a bound."""
     scene = gp.Scene.from_dict(kind.scene)
-    key = {"density": "error_of_the_density_at_walls", "pressure": "error_of_wall_pressures"}
-    return runs.engines(kind.name)[engine].predictions(scene).get(key.get(observable), 0.0)
+    return runs.engines(kind.name)[engine].predictions(scene).get(STATED.get(observable), 0.0)
 
 
 def deviation_of(observable, kind, result, part, right, bound=0.0):
@@ -233,7 +238,7 @@ def deviation_of(observable, kind, result, part, right, bound=0.0):
     value, error = np.asarray(value, float), np.asarray(error, float)
     freedom = np.broadcast_to(np.asarray(freedom, float), value.shape)
     right, known_error = (np.broadcast_to(one, value.shape) for one in (at, known_error))
-    independent = not kind.points  # a point crosses many bins with one velocity
+    independent = not (kind.points or kind.solid)  # neighbouring bins then hold the same bodies
     return compared(value, error, freedom, right, known_error, independent)
 
 

@@ -58,7 +58,7 @@ def gases(draw):
         origin=origin,
         boundary=tuple(draw(st.sampled_from(["periodic", "wall"])) for _ in range(3)),
         order=order,
-        ways={name: draw(st.booleans()) for name in ("scaled", "double", "diameter", "momenta", "shapes")},
+        ways={name: draw(st.booleans()) for name in ("double", "diameter", "momenta", "shapes")},
     )
 
 
@@ -81,10 +81,7 @@ def write_netcdf(path, gas):
         add("cell_lengths", stated, "cell_spatial")
         add("cell_angles", np.full((frames, 3), 90.0), "cell_spatial")
         add("cell_origin", gas.origin, "cell_spatial")
-        places, name = gas.positions + gas.origin[:, None], "coordinates"
-        if gas.ways["scaled"]:
-            places, name = gas.positions / gas.lengths[:, None], "scaled_coordinates"
-        add(name, gas.shuffled(places), "atom", "spatial")
+        add("coordinates", gas.shuffled(gas.positions + gas.origin[:, None]), "atom", "spatial")
         add("id", gas.shuffled(np.arange(1, count + 1)[None]), "atom", of="i4")
         size = "diameter" if gas.ways["diameter"] else "radius"
         add(size, gas.shuffled(gas.radii) * (2.0 if size == "diameter" else 1.0), "atom")
@@ -153,7 +150,7 @@ def write_xyz(path, gas):
                 row.append(f"{gas.masses[0, k]:.9f}")
             if gas.velocities is not None:
                 moving = gas.velocities[n, k] * (gas.masses[0, k] if momenta else 1.0)
-                row += [f"{x:.9e}".replace("e", "D") for x in moving]
+                row += [f"{x:.9e}" for x in moving]
             lines.append("  ".join(row))
         lines += [""] * (n % 2)
     path.write_text("\n".join(lines) + "\n")
@@ -174,7 +171,7 @@ def gas_of(frames=2, count=4, **changes):
         "origin": np.zeros((frames, 3)),
         "boundary": ("periodic",) * 3,
         "order": np.broadcast_to(np.arange(count), (frames, count)),
-        "ways": dict.fromkeys(("scaled", "double", "diameter", "momenta", "shapes"), False),
+        "ways": dict.fromkeys(("double", "diameter", "momenta", "shapes"), False),
     }
     return Gas(**{**fields, **changes})
 

@@ -353,7 +353,7 @@ def test_options_come_before_what_an_xyz_file_states(tmp_path, comment, options)
 @pytest.mark.parametrize(
     ("comment", "rule"),
     [
-        ('Lattice="8 8"', "3, 4 or 9 numbers; give --lengths"),
+        ('Lattice="8 8"', "3 or 4 or 9 numbers; give --lengths"),
         ('Lattice="8 8 8" pbc="F F T F"', "for each of 2 axes; give --boundary"),
         ('Lattice="8 8 8" Origin="1"', "2 or 3 numbers; give --origin"),
         ('Lattice="8 1 0 8"', "tilted"),

@@ -9,7 +9,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.scene.shear import flow
+from gaspart.scene.boundaries import flow
 from gaspart.trajectory.recipe import read_recipe
 
 EVENT = gp.EventDriven()

@@ -5,8 +5,7 @@ import pytest
 from matplotlib.image import imread
 
 from gaspart.rendering import style
-from gaspart.rendering.key import save_key_picture
-from gaspart.rendering.legibility import flaws
+from gaspart.rendering.legibility import flaws, save_key_picture
 
 
 @pytest.fixture
@@ -91,3 +90,17 @@ def test_a_key_picture_is_one_panel_with_its_labels(tmp_path, number, title):
     assert figure.axes == [axes[number]]
     assert figure.axes[0].get_title(loc="left") == title and figure.axes[0].get_xlabel() == "time"
     assert imread(tmp_path / "key.png").shape[:2] == (321, 480)
+
+
+def test_a_key_picture_breaks_labels_and_legends_that_are_too_long(tmp_path):
+    with style.use_style("page"):
+        figure, (axis, _) = style.new((2.4,), (2.4,))
+        for name in ("spheres whose centres reach the walls", "spheres in a periodic container"):
+            axis.plot([0.0, 1.0], [0.0, 1.0], label=name)
+        figure.legend(ncols=2, loc="outside upper center")
+        axis.set_ylabel("time per particle and step (ns)")
+        axis.set_xlabel("growth rate of the diameter divided by the thermal speed $v / v_0$")
+        style.save(figure, tmp_path / "whole.png")
+        save_key_picture(figure, 0, tmp_path / "key.png")
+        assert not flaws(figure)
+    assert axis.get_xlabel().count("\n") == 1

@@ -1,6 +1,7 @@
 """The page on which a gas runs: it has the bits of simulations, and works in browsers."""
 
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -66,7 +67,7 @@ def compared(scene, folder, number, seed, duration):
 
 @needs_node
 def test_a_page_has_the_bits_of_simulations(tmp_path):
-    # Of this seed all contacts lose energy and a face is thermal, for which natively one kind of kernels does.
+    # Of this seed all contacts lose energy and a face is thermal: natively, one kind of kernels does.
     differ, collisions = compared(lorentz(), tmp_path, 3, 17, 300.0)
     assert not differ
     assert collisions > 10_000
@@ -105,6 +106,26 @@ return { rows: byId("meters").innerText, flags: gas.flags, over: over(), time: g
     found, lines = found_in(CHROMIUM, page, DRIVE + script, tmp_path, width=390)
     assert not lines and not found["over"]
     assert found["flags"] == "rt" and found["time"] > 0.0
+
+
+def test_a_page_shows_all_particles_before_it_runs(gas):
+    (still,) = re.findall('<svg id="still".*?</svg>', gas.read_text(), re.DOTALL)
+    assert still.count("h0") == scene_of("gas").count and 'viewBox="0 0 48 36"' in still
+
+
+@needs_chromium
+def test_in_a_frame_of_another_page_the_gas_runs_alone(tmp_path):
+    page = gp.play(lorentz(), SEED).save(tmp_path / "page.html")
+    page.write_text(page.read_text().replace("<head>", '<head><script>window.name = "alone"</script>'))
+    script = """
+for (let n = 0; n < 200 && !gas.time; n++) await wait(50);
+const shown = [...document.querySelectorAll("h1, aside, footer, fieldset, svg, canvas, button")].filter(
+  it => it.getClientRects().length).map(it => it.id);
+return { shown, time: gas.time, over: document.documentElement.scrollHeight > innerHeight };
+"""
+    found, lines = found_in(CHROMIUM, page, DRIVE + script, tmp_path, width=600, height=400)
+    assert not lines and found["time"] > 0.0 and not found["over"]
+    assert found["shown"] == ["canvas", "run"]
 
 
 @pytest.mark.thorough

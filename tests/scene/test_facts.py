@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 import gaspart as gp
-from gaspart.scene.faces import FACES, Open, Thermal
+from gaspart.scene.faces import Open
+from gaspart.scene.surfaces import FACES, Thermal
 from gaspart.trajectory.reading import open_trajectory
 
 BOX = gp.Container((6.0, 8.0))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scenes import mixtures
 
 import gaspart as gp
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 
 GOOD = {
     "container": {"lengths": [10.0, 10.0], "boundary": "wall"},

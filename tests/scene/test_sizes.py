@@ -8,7 +8,6 @@ from scipy.special import ndtri
 
 import gaspart as gp
 from gaspart.scene import sizes
-from gaspart.scene.limits import closest_packing
 from gaspart.state.initial import initial_state
 from gaspart.state.insertion import per_particle
 
@@ -55,7 +54,7 @@ def test_what_a_scene_has_follows_from_the_radii():
     (kind,) = gas.species
     assert gas.largest_radius == kind.radii[0] and gas.smallest_radius == kind.radii[-1]
     assert gas.packing_fraction == pytest.approx(4.0 / 3.0 * np.pi * (kind.radii**3).sum() / 12.0**3)
-    assert gas.gas is None and not gas.alike and closest_packing(gas) == 1.0
+    assert gas.gas is None and not gas.alike and gas.closest_packing == 1.0
     assert np.array_equal(per_particle(gas, "radius"), kind.radii)
     mixture = gas.mixture
     assert len(mixture.diameters) == 300 and sum(mixture.counts) == 300

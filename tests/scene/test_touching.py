@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 
 TRIPLES = (
     (3, 4, 0, 5),

@@ -139,7 +139,7 @@ def frames_in(partial):
         return 0
 
 
-@pytest.mark.parametrize("engine", ["event", "step"])
+@pytest.mark.parametrize("engine", ["event", pytest.param("step", marks=pytest.mark.thorough)])
 def test_killed_again_and_again_and_resumed(tmp_path, engine):
     """kill -9, at moments that differ from run to run of this test; the finished file never does."""
     scene, path = tmp_path / "scene.yaml", tmp_path / "run.nc"

@@ -1,6 +1,8 @@
 """Arguments out of range: an error instead of a wrong number, whatever the formula."""
 
 import inspect
+import pkgutil
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -17,10 +19,14 @@ GOOD |= {"diameters": [1.0, 0.5], "quantity": "viscosity"}
 GOOD |= {"side_over_diameter": 9.0, "boundary": "wall", "radius": 0.5, "side": 9.0}
 
 
+MODULES = [import_module(f"gaspart.theory.{one.name}") for one in pkgutil.iter_modules(theory.__path__)]
+FORMULAS = {name: getattr(theory, name) for name in theory.__all__}
+FORMULAS |= {key: one for part in MODULES for key, one in vars(part).items() if hasattr(one, "__wrapped__")}
+
+
 def cases():
     """(name of a function, name of one of its arguments that has a range)."""
-    for name in theory.__all__:
-        function = getattr(theory, name)
+    for name, function in FORMULAS.items():
         if inspect.isfunction(function):
             for argument in inspect.signature(function).parameters:
                 if argument in _arguments._RANGES:
@@ -29,7 +35,7 @@ def cases():
 
 @pytest.mark.parametrize(("name", "argument"), list(cases()))
 def test_what_is_out_of_range_is_refused(name, argument):
-    function = getattr(theory, name)
+    function = FORMULAS[name]
     parameters = inspect.signature(function).parameters.values()
     required = {p.name: GOOD.get(p.name, 1.0) for p in parameters if p.default is p.empty}
     least, most, _ = _arguments._RANGES[argument]

@@ -7,20 +7,22 @@ import pytest
 
 from gaspart import theory
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
+from gaspart.theory.brownian import friction_rate, langevin_msd, langevin_msd_from_rest, tagged_diffusion
+from gaspart.theory.diffusion import velocity_decay_rate
 
 
 def test_friction_of_a_particle_as_large_as_the_gas_is_enskogs():
     """For R = r and M = m it is the velocity decay rate of the gas itself, and D is Enskog's, if dilute."""
     eta = 1e-7
     density = theory.number_density(eta, 3)
-    rate = theory.friction_rate(density, 1.0, 1.0)
-    assert rate == pytest.approx(theory.velocity_decay_rate(eta, 3), rel=1e-5)
-    assert theory.tagged_diffusion(rate, 1.0) == pytest.approx(theory.enskog_diffusion(eta, 3), rel=1e-5)
+    rate = friction_rate(density, 1.0, 1.0)
+    assert rate == pytest.approx(velocity_decay_rate(eta, 3), rel=1e-5)
+    assert tagged_diffusion(rate, 1.0) == pytest.approx(theory.enskog_diffusion(eta, 3), rel=1e-5)
 
 
 def test_friction_of_a_heavy_particle_is_the_drag_of_free_molecular_flow():
     """M g V = (4/3) pi a^2 n m <v> V (Epstein's drag of a smooth sphere)."""
-    drag = 1e6 * theory.friction_rate(0.01, 3.0, 1e6, 1.0, 2.0)
+    drag = 1e6 * friction_rate(0.01, 3.0, 1e6, 1.0, 2.0)
     assert drag == pytest.approx(4 / 3 * np.pi * 9.0 * 0.01 * theory.mean_speed(3, 2.0), rel=1e-6)
 
 
@@ -38,17 +40,17 @@ def test_collisions_carry_the_friction():
     chance = 4.0 * np.pi * np.maximum(-along, 0.0)  # per time, at n a^2 = 1
     rate = -(kick * chance).mean() / drift
     scatter = (kick * chance).std() / np.sqrt(len(kick)) / drift
-    assert abs(rate - theory.friction_rate(1.0, 1.0, particle)) < 3.5 * scatter
+    assert abs(rate - friction_rate(1.0, 1.0, particle)) < 3.5 * scatter
 
 
 def test_langevin_displacements():
     t = np.array([0.0, 1e-4, 9e-4, 1.1e-3, 0.3, 4.0, 50.0])
-    assert theory.langevin_msd(t, 2.0, 0.5)[-1] == pytest.approx(12.0 * (50.0 - 2.0), rel=1e-9)
-    assert theory.langevin_msd(1e-4, 2.0, 0.5) == pytest.approx(3.0 * 2.0 * 0.5 * 1e-8, rel=1e-4)
-    rest = theory.langevin_msd_from_rest(t, 2.0, 0.5)
+    assert langevin_msd(t, 2.0, 0.5)[-1] == pytest.approx(12.0 * (50.0 - 2.0), rel=1e-9)
+    assert langevin_msd(1e-4, 2.0, 0.5) == pytest.approx(3.0 * 2.0 * 0.5 * 1e-8, rel=1e-4)
+    rest = langevin_msd_from_rest(t, 2.0, 0.5)
     assert rest[-1] == pytest.approx(12.0 * (50.0 - 3.0), rel=1e-9)
-    assert theory.langevin_msd_from_rest(0.02, 2.0, 0.5) == pytest.approx(2.0 * 2.0 * 0.25 * 8e-6, rel=0.01)
-    assert (np.diff(rest) > 0.0).all() and (rest[1:] < theory.langevin_msd(t[1:], 2.0, 0.5)).all()
+    assert langevin_msd_from_rest(0.02, 2.0, 0.5) == pytest.approx(2.0 * 2.0 * 0.25 * 8e-6, rel=0.01)
+    assert (np.diff(rest) > 0.0).all() and (rest[1:] < langevin_msd(t[1:], 2.0, 0.5)).all()
     fine = np.linspace(
         0.0, 4.0, 4001
     )  # dr^2/dt = 2 <r.v>, d<r.v>/dt = <v^2> - g <r.v>, <v^2> = 3 D g (1 - e^-2gt)
@@ -72,7 +74,7 @@ MAXWELL = np.asarray(theory.maxwell_ppf((np.arange(20_000) + 0.5) / 20_000, 3))
 
 def hits(rate, mass):
     """n pi a^2 of a gas at temperature 1 in which a sphere's velocity decays at `rate` at first."""
-    return float(rate * np.pi / theory.friction_rate(1.0, 1.0, mass))
+    return float(rate * np.pi / friction_rate(1.0, 1.0, mass))
 
 
 def test_a_light_sphere_in_maxwells_gas_has_equipartition_and_sonines_diffusion():

@@ -12,6 +12,9 @@ from theory.half_space import temperature_jump, velocity_slip
 from gaspart import theory
 from gaspart.theory import heat, shear
 from gaspart.theory.boltzmann import brackets, collisions, flux_relaxation
+from gaspart.theory.free_flights import collision_rate_at_speed, free_time_pdf
+from gaspart.theory.granular import driven_cumulant
+from gaspart.theory.shear import VELOCITY_SLIP
 
 SAME_FORMULA = {
     "contact_value": theory.contact_value,
@@ -176,7 +179,7 @@ def test_the_cumulants_of_inelastic_gases_follow_from_the_moments(dimension, res
     cooling = (m4 - (d + 2) * m2) / ((d + 2) * (m2 + more2) - more4)
     driven = (m4 - (d + 2) * m2) / ((d + 2) * more2 - more4)
     assert theory.fourth_cumulant(restitution, d) == pytest.approx(cooling, rel=1e-9)
-    assert theory.driven_cumulant(restitution, d) == pytest.approx(driven, rel=1e-9)
+    assert driven_cumulant(restitution, d) == pytest.approx(driven, rel=1e-9)
     # energy lost per time, and collisions per time, over those of Maxwell's gas: 1 + 3 a2 / 16, 1 - a2 / 16
     assert more2 / m2 == pytest.approx(3.0 / 16.0, rel=1e-9)
     assert (weights @ change) / weights.sum() == pytest.approx(-1.0 / 16.0, rel=1e-9)
@@ -197,7 +200,7 @@ def test_the_velocity_slip_is_that_of_the_linearised_boltzmann_equation():
     less, more = (velocity_slip(highest, highest) for highest in (4, 6))
     limit = more + (more - less) / ((6.0 / 4.0) ** 3 - 1.0)
     assert less < more < limit
-    assert abs(limit - theory.VELOCITY_SLIP) < more - less
+    assert abs(limit - VELOCITY_SLIP) < more - less
     assert more - shear.ELEMENTARY_SLIP > 6.0 * (more - less)
 
 
@@ -255,7 +258,7 @@ GAS = {"packing_fraction": 0.1, "diameter": 2.0, "temperature": 3.0, "mass": 0.5
 def test_the_mean_over_speeds_is_the_collision_rate(dimension):
     def weighted(v):
         pdf = theory.maxwell_pdf(v, dimension, GAS["temperature"], GAS["mass"])
-        return pdf * theory.collision_rate_at_speed(v, dimension=dimension, **GAS)
+        return pdf * collision_rate_at_speed(v, dimension=dimension, **GAS)
 
     mean, _ = quad(weighted, 0.0, 40.0, epsabs=1e-12)
     assert mean == pytest.approx(float(theory.collision_rate(dimension=dimension, **GAS)), rel=1e-9)
@@ -271,7 +274,7 @@ def test_the_rate_is_that_of_partners_of_all_velocities(dimension, speed):
     section = {2: 2.0 * 2.0, 3: math.pi * 2.0**2}[dimension]  # of a pair: 2 sigma, pi sigma^2
     density = theory.number_density(0.1, dimension, 2.0) * theory.contact_value(0.1, dimension)
     expected, error = section * density * relative.mean(), section * density * relative.std() / 632.0
-    assert abs(theory.collision_rate_at_speed(speed, dimension=dimension, **GAS) - expected) < 4.0 * error
+    assert abs(collision_rate_at_speed(speed, dimension=dimension, **GAS) - expected) < 4.0 * error
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -279,7 +282,7 @@ def test_the_distribution_of_free_times_has_its_moments(dimension):
     rate = float(theory.collision_rate(dimension=dimension, **GAS))
 
     def pdf(t):
-        return float(theory.free_time_pdf(t, dimension=dimension, **GAS))
+        return float(free_time_pdf(t, dimension=dimension, **GAS))
 
     whole, mean, square = (
         quad(lambda t, n=n: t**n * pdf(t), 0.0, 60.0 / rate, limit=200)[0] for n in (0, 1, 2)
@@ -288,5 +291,5 @@ def test_the_distribution_of_free_times_has_its_moments(dimension):
     assert mean == pytest.approx(1.0 / rate, rel=1e-6)
     assert 1.02 < square / (2.0 * mean**2) < 1.2  # broader than an exponential
     assert pdf(0.0) > rate
-    values = theory.free_time_pdf(np.array([[0.0, 1.0], [2.0, 3.0]]), dimension=dimension, **GAS)
+    values = free_time_pdf(np.array([[0.0, 1.0], [2.0, 3.0]]), dimension=dimension, **GAS)
     assert values.shape == (2, 2) and values[0, 0] == pytest.approx(pdf(0.0))

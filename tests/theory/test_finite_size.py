@@ -7,6 +7,8 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.theory.finite_size import finite_size_remainder, insertion_potential, pair_contact_value
+from gaspart.theory.tables import insertion_finite_size_correction
 
 KNOWN = [
     (3, 108, 0.5113, 13.74, 0.03),
@@ -26,7 +28,7 @@ def test_the_remainder_of_108_dense_spheres_is_what_they_lack():
     """The expansion has 14.044 where 13.74 is measured, and the equation of state is known to 1e-4."""
     side = (108 * math.pi / 6.0 / 0.5113) ** (1.0 / 3.0)
     lacking = (14.044 - 13.74) / 13.044
-    assert lacking / 3.0 < theory.finite_size_remainder(0.5113, 3, side) < 3.0 * lacking
+    assert lacking / 3.0 < finite_size_remainder(0.5113, 3, side) < 3.0 * lacking
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -40,7 +42,7 @@ def test_the_remainder_covers_the_table(dimension):
     shifts = [theory.finite_size_correction(x, dimension, int(n)) for x, n in zip(eta, count, strict=True)]
     expansion = (excess + shifts) / (2.0 ** (dimension - 1) * eta)
     known = np.hypot(theory.compressibility_uncertainty(eta, dimension) / excess, (shifts / excess) ** 2)
-    left = theory.finite_size_remainder(eta, dimension, side)
+    left = finite_size_remainder(eta, dimension, side)
     z = (rows.value / expansion - 1.0) / np.sqrt(left**2 + known**2 + (rows.error / expansion) ** 2)
     assert len(rows) > 30 and np.abs(z).max() < 4.0 and 0.5 < np.sqrt(np.mean(z**2)) < 1.3
 
@@ -58,21 +60,19 @@ def test_the_table_is_known_to_two_in_a_thousand(dimension):
 def test_the_remainder_grows_with_the_density_and_falls_with_the_side():
     sides = np.array([2.5, 3.0, 4.0, 6.0, 10.0])
     for dimension, dense in ((2, 0.65), (3, 0.5)):
-        falling = theory.finite_size_remainder(dense, dimension, sides)
+        falling = finite_size_remainder(dense, dimension, sides)
         assert (np.diff(falling) < 0.0).all()
-        assert (theory.finite_size_remainder(0.3, dimension, sides) < falling).all()
-        assert theory.finite_size_remainder(0.3, dimension, 2.0) == math.inf
+        assert (finite_size_remainder(0.3, dimension, sides) < falling).all()
+        assert finite_size_remainder(0.3, dimension, 2.0) == math.inf
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_two_particles_have_a_closed_form(dimension):
-    assert theory.pair_contact_value(0.1, dimension) == pytest.approx(
-        1.0 / (1.0 - 2.0 ** (dimension - 1) * 0.1)
-    )
+    assert pair_contact_value(0.1, dimension) == pytest.approx(1.0 / (1.0 - 2.0 ** (dimension - 1) * 0.1))
     rows = theory.small_systems("contact_value", dimension)
     rows = rows[rows["count"] == 2]
     for row in rows[rows.packing_fraction < 0.37] if dimension == 3 else rows:
-        exact = float(theory.pair_contact_value(row.packing_fraction, dimension))
+        exact = float(pair_contact_value(row.packing_fraction, dimension))
         assert abs(row.value - exact) < 4.0 * row.error
     assert theory.finite_contact_value(0.1, dimension, 2)[1] == 0.0
 
@@ -83,14 +83,12 @@ def test_nothing_is_stated_where_the_expansion_fails():
     with pytest.raises(gp.SceneError, match="count = 1"):
         theory.finite_contact_value(0.1, 3, 1)
     with pytest.raises(gp.SceneError, match="uncertain by"):
-        theory.insertion_potential(0.49, 3, 8, 2.04)
+        insertion_potential(0.49, 3, 8, 2.04)
 
 
 def test_insertion_beside_one_particle_is_exact_and_uncertain_beside_many():
-    assert theory.insertion_potential(0.05, 3, 1, 2.2) == (-math.log(1.0 - 0.4), 0.0)
-    value, error = theory.insertion_potential(0.3, 3, 500, 9.55)
-    known = float(
-        theory.excess_chemical_potential(0.3, 3) + theory.insertion_finite_size_correction(0.3, 3, 500)
-    )
+    assert insertion_potential(0.05, 3, 1, 2.2) == (-math.log(1.0 - 0.4), 0.0)
+    value, error = insertion_potential(0.3, 3, 500, 9.55)
+    known = float(theory.excess_chemical_potential(0.3, 3) + insertion_finite_size_correction(0.3, 3, 500))
     assert value == pytest.approx(known) and 0.0 < error < 1e-3 * value
-    assert theory.insertion_potential(0.45, 3, 64, 4.21)[1] > 20.0 * error
+    assert insertion_potential(0.45, 3, 64, 4.21)[1] > 20.0 * error

@@ -7,11 +7,18 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from theory.homogeneous import homogeneous_gas, rough_discs, rough_start
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.theory.boltzmann import homogeneous_gas, rough_discs, rough_start
-from gaspart.theory.rough import ROUGH_START_UNCERTAINTY
+from gaspart.theory.granular import cooling_rate_finite_size_factor, driven_cumulant, finite_size_cumulant
+from gaspart.theory.rough import (
+    ROUGH_START_UNCERTAINTY,
+    rough_cooling,
+    rough_matrix,
+    rough_start_excess,
+    rough_wall_difference,
+)
 
 
 def drawn_matrix(q, tangential, normal, pairs=400_000):
@@ -37,7 +44,7 @@ def drawn_matrix(q, tangential, normal, pairs=400_000):
 @pytest.mark.parametrize(("q", "tangential", "normal"), [(0.5, 1.0, 1.0), (0.5, 0.0, 0.8), (0.2, -0.5, 1.0)])
 def test_the_matrix_is_the_mean_of_the_contact_law(q, tangential, normal):
     found = drawn_matrix(q, tangential, normal)
-    assert found == pytest.approx(theory.rough_matrix(q, tangential, normal), abs=0.003)
+    assert found == pytest.approx(rough_matrix(q, tangential, normal), abs=0.003)
 
 
 def test_perfectly_rough_discs_share_equally_at_the_known_rate():
@@ -66,11 +73,9 @@ def test_between_rough_walls_every_hit_follows_the_contact_law(q, particles=200_
             upwards = upwards ^ hits
             next_hit = np.where(hits, next_hit + 1.0 / normal, next_hit)
         found = np.mean(v**2 - q * w**2) / start
-        assert found == pytest.approx(
-            theory.rough_wall_difference(time, q), abs=4.0 * 1.7 / np.sqrt(particles)
-        )
-    assert theory.rough_wall_difference(0.0, q) == pytest.approx(1.0, abs=2.1e-4)
-    lost = 1.0 - theory.rough_wall_difference(0.01, q)  # of 4q/(1+q)^2, twice, at each of |v| t / h hits
+        assert found == pytest.approx(rough_wall_difference(time, q), abs=4.0 * 1.7 / np.sqrt(particles))
+    assert rough_wall_difference(0.0, q) == pytest.approx(1.0, abs=2.1e-4)
+    lost = 1.0 - rough_wall_difference(0.01, q)  # of 4q/(1+q)^2, twice, at each of |v| t / h hits
     assert lost == pytest.approx(8.0 * q / (1.0 + q) ** 2 * 0.01 * np.sqrt(2.0 / np.pi), rel=1e-6)
 
 
@@ -80,7 +85,7 @@ def test_the_ratio_is_where_the_temperatures_tend():
 
 
 def test_smooth_discs_cool_by_haffs_law():
-    assert theory.rough_matrix(0.5, -1.0, 0.9)[0, 0] == pytest.approx(-(1.0 - 0.81) / 2.0)
+    assert rough_matrix(0.5, -1.0, 0.9)[0, 0] == pytest.approx(-(1.0 - 0.81) / 2.0)
     assert theory.fourth_cumulant(0.9, 3) == pytest.approx(-0.01456, abs=1e-5)
     assert theory.fourth_cumulant(np.sqrt(0.5), 2) == pytest.approx(0.0, abs=1e-15)
     assert theory.cooling_rate(0.9, 2) == pytest.approx(0.095 * (1.0 - 0.02686 / 4.0), rel=1e-4)
@@ -95,7 +100,7 @@ def test_the_moments_of_the_cooling_gas_are_those_of_the_driven_one(dimension, e
     """From mu_4 = (d + 2) (1 + a2) mu_2 and mu_4 = (d + 2) mu_2, with the same moments to first order."""
     fourth = dimension + 1.5 + e**2
     slope = 3.0 * (10.0 * dimension + 39.0 + 10.0 * e**2) / 32.0 + (dimension - 1.0) / (1.0 - e)
-    for own, found in ((1.0, theory.fourth_cumulant), (0.0, theory.driven_cumulant)):
+    for own, found in ((1.0, theory.fourth_cumulant), (0.0, driven_cumulant)):
         expected = (dimension + 2 - fourth) / (slope - (dimension + 2) * (own + 3.0 / 16.0))
         assert found(e, dimension) == pytest.approx(expected, rel=1e-12)
 
@@ -116,7 +121,7 @@ def test_the_cumulant_of_few_maxwellian_particles_is_not_zero(count, dimension):
     squares = (velocities**2).sum(axis=2)
     second = (squares.mean(axis=1) ** 2).mean()
     found = dimension * (squares**2).mean() / ((dimension + 2) * second) - 1.0
-    expected = theory.finite_size_cumulant(0.0, count, dimension)
+    expected = finite_size_cumulant(0.0, count, dimension)
     assert found == pytest.approx(expected, abs=0.02 * abs(expected) + 1e-3)
 
 
@@ -126,7 +131,7 @@ def test_few_driven_particles_are_as_warm_as_many():
     count, eta, e, ratios = 12, 0.002, 0.7, []
     side = float(count / theory.number_density(eta, 3)) ** (1.0 / 3.0)
     power = 0.5 * (1.0 - e**2) * theory.collision_rate(eta, 3)
-    power *= 1.0 + 0.1875 * theory.driven_cumulant(e, 3)
+    power *= 1.0 + 0.1875 * driven_cumulant(e, 3)
     assert theory.driven_temperature(e, 3, power, eta) == pytest.approx(1.0)
     time = 1.0 / float(theory.collision_rate(eta, 3))
     scene = gp.Scene(
@@ -157,21 +162,21 @@ def test_few_particles_of_one_energy_lose_more_or_less_of_it(count, dimension):
     velocities -= velocities.mean(axis=1, keepdims=True)
     velocities *= np.sqrt(count * dimension / (velocities**2).sum(axis=(1, 2)))[:, None, None]
     approach = np.maximum(velocities[:, 0, 0] - velocities[:, 1, 0], 0.0)
-    factor = theory.cooling_rate_finite_size_factor(count, dimension)
+    factor = cooling_rate_finite_size_factor(count, dimension)
     assert (approach**3).mean() / approach.mean() / 4.0 == pytest.approx(factor, rel=0.01)
-    assert theory.cooling_rate_finite_size_factor(1e9, dimension) == pytest.approx(1.0, abs=1e-8)
+    assert cooling_rate_finite_size_factor(1e9, dimension) == pytest.approx(1.0, abs=1e-8)
 
 
 @pytest.mark.parametrize(
     ("function", "arguments"),
     [
         (theory.fourth_cumulant, (1.1, 2)),
-        (theory.driven_cumulant, (1.1, 2)),
-        (theory.rough_matrix, (0.0, 1.0)),
-        (theory.rough_matrix, (0.5, 1.5)),
+        (driven_cumulant, (1.1, 2)),
+        (rough_matrix, (0.0, 1.0)),
+        (rough_matrix, (0.5, 1.5)),
         (theory.rough_ratio, (0.5, -1.0)),
-        (theory.rough_wall_difference, (1.0, 0.0)),
-        (theory.rough_wall_difference, (-1.0, 0.5)),
+        (rough_wall_difference, (1.0, 0.0)),
+        (rough_wall_difference, (-1.0, 0.5)),
     ],
 )
 def test_invalid_arguments_are_refused(function, arguments):
@@ -211,7 +216,7 @@ def test_the_cumulant_of_a_cooling_gas_is_that_of_the_program():
 def test_the_table_of_rough_cooling_is_that_of_the_program():
     ratios = rough_discs(10_000, 20.0, 0.5, 0.0, seed=6)
     late = ratios[len(ratios) * 2 // 5 :]
-    ((_, _, _, tabulated, error),) = [row for row in theory.rough_cooling() if row[1] == 0.0]
+    ((_, _, _, tabulated, error),) = [row for row in rough_cooling() if row[1] == 0.0]
     # the table is of 24 times as many discs (6 gases of 40 000), over 40 collisions of a disc instead of 12
     assert late.mean() == pytest.approx(tabulated, abs=3.0 * error * np.sqrt(1.0 + 24.0 * 40.0 / 12.0))
 
@@ -222,7 +227,7 @@ def test_perfectly_rough_discs_keep_equipartition():
 
 @pytest.mark.parametrize("tangential", [-0.5, 0.0, 0.5, 0.8])
 def test_rough_discs_that_cool_have_less_spin_than_if_they_were_maxwellian(tangential):
-    ((*_, ratio, error),) = [row for row in theory.rough_cooling() if row[1] == tangential]
+    ((*_, ratio, error),) = [row for row in rough_cooling() if row[1] == tangential]
     assert 0.95 < (ratio + 3.0 * error) / theory.rough_ratio(0.5, tangential) < 1.001
 
 
@@ -231,16 +236,16 @@ def test_the_table_is_that_of_the_program():
     s, difference = rough_start(count, 2.4, inertia, seed=9)
     maxwell = np.exp(-3.0 * inertia / (1.0 + inertia) ** 2 * s)
     excess = (difference - maxwell)[(s > 1.8) & (s < 2.4)].mean()
-    tabulated = float(np.mean(theory.rough_start_excess(inertia, np.array([1.8, 2.0, 2.2, 2.4]))))
+    tabulated = float(np.mean(rough_start_excess(inertia, np.array([1.8, 2.0, 2.2, 2.4]))))
     # 10 times fewer discs; that Maxwellian velocities throughout would give 0 is beyond its scatter.
     assert excess == pytest.approx(tabulated, abs=3.0 * ROUGH_START_UNCERTAINTY * np.sqrt(1.0 + 10.0))
     assert tabulated > 3.0 * ROUGH_START_UNCERTAINTY
 
 
 def test_it_starts_at_nothing_and_states_where_it_was_not_computed():
-    assert theory.rough_start_excess(0.5, 0.0) == 0.0
-    assert np.isnan(theory.rough_start_excess(0.5, 100.0))
-    assert np.isnan(theory.rough_start_excess(0.3, np.array([0.0, 1.0]))).all()
+    assert rough_start_excess(0.5, 0.0) == 0.0
+    assert np.isnan(rough_start_excess(0.5, 100.0))
+    assert np.isnan(rough_start_excess(0.3, np.array([0.0, 1.0]))).all()
 
 
 # The energy balance of a vibrated bed, against averages over Maxwellian velocities.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from theory.electrons import MetalSlab
 
 from gaspart.theory import heat
-from gaspart.theory.electrons import MetalSlab
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.shear import free_molecular_stress

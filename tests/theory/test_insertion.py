@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.theory.packing import available_fraction, insertion_saturation_uncertainty
 
 
 def test_saturation_in_boxes_agrees_with_insertions_to_saturation(table):
@@ -11,7 +12,7 @@ def test_saturation_in_boxes_agrees_with_insertions_to_saturation(table):
         expected = theory.insertion_saturation(*arguments)
         # Three runs do not give an error of their own: that of the next smaller box stands in.
         error = max(row["standard_error"], 8e-4 if row["runs"] < 5 else 0.0)
-        spread = np.hypot(error, theory.insertion_saturation_uncertainty(*arguments))
+        spread = np.hypot(error, insertion_saturation_uncertainty(*arguments))
         assert abs(row["packing_fraction_of_centres"] - expected) < 3.0 * spread
 
 
@@ -39,7 +40,7 @@ def test_large_containers_tend_to_the_infinite_value(dimension, boundary):
 @pytest.mark.parametrize(("dimension", "first"), [(2, 4.0), (3, 8.0)])
 def test_failures_at_low_density(dimension, first):
     assert theory.failures_per_particle(1e-6, dimension) == pytest.approx(first * 1e-6, rel=1e-4)
-    assert theory.available_fraction(0.0, dimension) == 1.0
+    assert available_fraction(0.0, dimension) == 1.0
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -49,7 +50,7 @@ def test_second_order_of_the_available_fraction_follows_from_the_virial_coeffici
     eta = 1e-3
     exact = np.exp(-2.0 * coefficients[1] * eta - 1.5 * coefficients[2] * eta**2)
     # What is left is of third order, at most the cube of the first one over six.
-    assert abs(theory.available_fraction(eta, dimension) - exact) < (2.0**dimension * eta) ** 3
+    assert abs(available_fraction(eta, dimension) - exact) < (2.0**dimension * eta) ** 3
 
 
 def test_available_fraction_against_insertion_itself():
@@ -65,7 +66,7 @@ def test_available_fraction_against_insertion_itself():
                 centres = np.vstack([centres, trial])
         fractions.append(fits(generator.uniform(0.0, side, (2000, 2)), centres, side).mean())
     error = np.std(fractions) / np.sqrt(len(fractions))
-    assert abs(np.mean(fractions) - theory.available_fraction(eta, 2)) < 4.0 * error
+    assert abs(np.mean(fractions) - available_fraction(eta, 2)) < 4.0 * error
 
 
 def fits(probes, centres, side):
@@ -79,4 +80,4 @@ def test_refusals():
     with pytest.raises(ValueError, match="boundary"):
         theory.insertion_saturation(3, 5.0, "open")
     with pytest.raises(ValueError, match="packing_fraction"):
-        theory.available_fraction(0.3, 3)
+        available_fraction(0.3, 3)

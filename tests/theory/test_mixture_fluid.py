@@ -6,6 +6,13 @@ import numpy as np
 import pytest
 
 from gaspart import theory
+from gaspart.theory.mixture_properties import (
+    dilute_mixture_conductivity,
+    mixture_insertion_correction,
+    percus_yevick_partial_factors,
+)
+from gaspart.theory.structure import percus_yevick_structure_factor
+from gaspart.theory.tables import insertion_finite_size_correction
 
 SIZES, PARTS, ETA = np.array([1.0, 0.6, 0.3]), np.array([0.2, 0.3, 0.5]), 0.35
 DENSITIES = ETA * PARTS / (np.pi / 6.0 * PARTS @ SIZES**3)
@@ -23,8 +30,8 @@ def moments(densities):
 
 def test_equal_spheres_have_one_structure():
     k = np.array([0.0, 0.3, 5.0, 7.0, 60.0])
-    found = theory.percus_yevick_partial_factors(k, 0.4, [1.0, 1.0], [0.3, 0.7])
-    whole = theory.percus_yevick_structure_factor(k, 0.4)
+    found = percus_yevick_partial_factors(k, 0.4, [1.0, 1.0], [0.3, 0.7])
+    whole = percus_yevick_structure_factor(k, 0.4)
     x = np.sqrt([0.3, 0.7])
     np.testing.assert_allclose(found, np.eye(2) + np.outer(x, x) * (whole - 1.0)[:, None, None], atol=1e-13)
 
@@ -37,10 +44,10 @@ def test_long_waves_have_the_compressibility_of_percus_and_yevick():
         total = xi[0] / rest + 3.0 * xi[1] * xi[2] / rest**2 + 3.0 * xi[2] ** 3 / rest**3
         return 6.0 / np.pi * total
 
-    found = theory.percus_yevick_partial_factors(0.0, ETA, SIZES, PARTS)
+    found = percus_yevick_partial_factors(0.0, ETA, SIZES, PARTS)
     root = np.sqrt(DENSITIES)
     np.testing.assert_allclose(np.linalg.inv(found) @ root / root, derivatives(pressure), rtol=1e-7)
-    short = theory.percus_yevick_partial_factors(80.0, ETA, SIZES, PARTS)
+    short = percus_yevick_partial_factors(80.0, ETA, SIZES, PARTS)
     np.testing.assert_allclose(short, np.eye(3), atol=0.01)
 
 
@@ -65,14 +72,14 @@ def test_potentials_in_known_limits(dimension):
     np.testing.assert_allclose(equal, pure, rtol=1e-10)
     point = theory.mixture_chemical_potentials(eta, dimension, [1.0, 1e-7], [1.0, 0.0])
     np.testing.assert_allclose(point, [pure, -math.log(1.0 - eta)], rtol=1e-6)
-    few = theory.mixture_insertion_correction(eta, dimension, [1.0, 1.0], [30, 70])
-    expected = float(theory.insertion_finite_size_correction(eta, dimension, 100))
+    few = mixture_insertion_correction(eta, dimension, [1.0, 1.0], [30, 70])
+    expected = float(insertion_finite_size_correction(eta, dimension, 100))
     np.testing.assert_allclose(few, expected, rtol=1e-4)
 
 
 def test_insertion_into_few_dilute_particles_has_no_correction():
     """To first order in the density each covers its part, whatever their number."""
-    found = theory.mixture_insertion_correction(1e-5, 3, [1.0, 0.5], [3, 5])
+    found = mixture_insertion_correction(1e-5, 3, [1.0, 0.5], [3, 5])
     assert (np.abs(found) < 1e-8).all()
 
 
@@ -87,8 +94,8 @@ def test_potentials_of_few_large_particles_among_many_small_ones():
     for factor in (0.5, 2.0):  # fractions, whatever their sum
         same = theory.mixture_chemical_potentials(0.168, 3, sizes, factor * counts)
         np.testing.assert_allclose(same, dense, rtol=1e-10)
-    many = theory.mixture_insertion_correction(0.168, 3, sizes, 1000 * counts)
-    few = theory.mixture_insertion_correction(0.168, 3, sizes, counts)
+    many = mixture_insertion_correction(0.168, 3, sizes, 1000 * counts)
+    few = mixture_insertion_correction(0.168, 3, sizes, counts)
     np.testing.assert_allclose(few, 1000.0 * many, rtol=1e-6)
 
 
@@ -107,7 +114,7 @@ def binary(x, masses, sizes):
 
 
 def test_the_conductivity_of_a_dilute_mixture():
-    found = theory.dilute_mixture_conductivity([1.0, 2.0], [0.6, 0.4], masses=[1.0, 10.0])
+    found = dilute_mixture_conductivity([1.0, 2.0], [0.6, 0.4], masses=[1.0, 10.0])
     assert found == pytest.approx(binary(0.6, (1.0, 10.0), (1.0, 2.0)), rel=1e-12)
-    equal = theory.dilute_mixture_conductivity([1.0] * 3, PARTS, temperature=4.0, masses=4.0)
+    equal = dilute_mixture_conductivity([1.0] * 3, PARTS, temperature=4.0, masses=4.0)
     assert equal == pytest.approx(75.0 / 64.0 / math.sqrt(math.pi))

@@ -5,8 +5,9 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.theory.mixtures import MIXTURE_THEORIES
 
-CASES = [(name, d) for name, where in theory.MIXTURE_THEORIES.items() for d in where]
+CASES = [(name, d) for name, where in MIXTURE_THEORIES.items() for d in where]
 ETA = (0.05, 0.3, 0.45)
 SIZES, NUMBERS = np.array([1.0, 0.6, 0.25]), np.array([1.0, 3.0, 5.0])
 

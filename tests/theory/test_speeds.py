@@ -3,6 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from gaspart import theory
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope, kurtosis_scatter
 
 UNITS = {"temperature": 2.5, "mass": 0.7}
 
@@ -48,7 +49,7 @@ def test_kurtosis_of_a_few_particles_at_fixed_energy(dimension, zero_momentum):
 def test_scatter_of_the_kurtosis_of_a_few_particles(dimension, count):
     squares = (np.random.default_rng(6).standard_normal((200_000, count, dimension)) ** 2).sum(axis=2)
     measured = (squares**2).mean(axis=1) / squares.mean(axis=1) ** 2
-    deviation, skewness = theory.kurtosis_scatter(dimension, count)
+    deviation, skewness = kurtosis_scatter(dimension, count)
     centred = measured - theory.kurtosis(dimension, count)
     assert centred.std() == pytest.approx(deviation, rel=0.01)
     assert (centred**3).mean() / deviation**3 == pytest.approx(skewness, rel=0.06)
@@ -84,7 +85,7 @@ def test_relaxation_starts_with_the_exact_slopes(dimension):
     s = 0.2
     # Second order from the curve itself: the slope at 0 is extrapolated from two intervals.
     slope = (4.0 * (curve.kurtosis(s) - 1.0) - (curve.kurtosis(2 * s) - 1.0)) / (2.0 * s)
-    assert slope == pytest.approx(theory.initial_kurtosis_slope(dimension), abs=3e-3)
+    assert slope == pytest.approx(initial_kurtosis_slope(dimension), abs=3e-3)
     assert (1.0 - curve.never_hit(0.01)) / 0.01 == pytest.approx(1.0, abs=0.01)
 
 
@@ -98,7 +99,7 @@ def test_initial_slope_of_spheres_by_direct_averaging():
     gain = 2.0 * (total * relative**2 / 4.0) / 3.0
     # s = 1 is half a collision event per particle, so the change per particle is half the pair's.
     slope = 0.5 * np.trapezoid(gain * relative, c) / np.trapezoid(relative, c)
-    assert slope == pytest.approx(theory.initial_kurtosis_slope(3), rel=1e-6)
+    assert slope == pytest.approx(initial_kurtosis_slope(3), rel=1e-6)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -106,7 +107,7 @@ def test_relaxation_curves_are_monotonic_and_reach_equilibrium(dimension):
     curve = theory.relaxation(dimension)
     s = np.linspace(0.0, 30.0, 3001)
     # The tables are Monte Carlo: a step may go back by its noise, not by more.
-    assert np.all(np.diff(curve.kurtosis(s)) > -theory.RELAXATION_UNCERTAINTY)
+    assert np.all(np.diff(curve.kurtosis(s)) > -RELAXATION_UNCERTAINTY)
     assert np.all(np.diff(curve.never_hit(s)) < 1e-4)
     assert curve.kurtosis(40.0) == pytest.approx(theory.kurtosis(dimension), abs=1e-6)
     assert curve.never_hit(40.0) < 1e-15

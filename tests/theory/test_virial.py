@@ -3,6 +3,7 @@ import pytest
 from scipy.integrate import quad
 
 from gaspart import theory
+from gaspart.theory.virial import linear_tail, partial_sum_uncertainty
 
 
 def overlap(distance, dimension):
@@ -49,13 +50,13 @@ def test_tail_continues_the_coefficients_on_a_straight_line(dimension):
     coefficients, _ = theory.virial_coefficients(dimension)
     slope = coefficients[9] - coefficients[8]
     terms = [(coefficients[9] + k * slope) * 0.4 ** (9 + k) for k in range(1, 200)]
-    assert theory.linear_tail(0.4, dimension) == pytest.approx(sum(terms), rel=1e-12)
+    assert linear_tail(0.4, dimension) == pytest.approx(sum(terms), rel=1e-12)
 
 
 def test_partial_sum_uncertainty_is_that_of_the_uncertain_coefficients():
     _, uncertainties = theory.virial_coefficients(3)
-    assert theory.partial_sum_uncertainty(0.3, 4, 3) == 0.0
-    assert theory.partial_sum_uncertainty(0.3, 5, 3) == pytest.approx(uncertainties[4] * 0.3**4)
+    assert partial_sum_uncertainty(0.3, 4, 3) == 0.0
+    assert partial_sum_uncertainty(0.3, 5, 3) == pytest.approx(uncertainties[4] * 0.3**4)
 
 
 def test_arguments_out_of_range_are_refused():

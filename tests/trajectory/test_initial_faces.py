@@ -7,7 +7,7 @@ import pytest
 from scenes import gas
 
 import gaspart as gp
-from gaspart.scene.shear import flow
+from gaspart.scene.boundaries import flow
 from gaspart.state.given import check_apart, state_at_time_zero
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import read_recipe

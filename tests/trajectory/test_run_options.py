@@ -4,13 +4,14 @@ import ast
 import inspect
 import re
 from dataclasses import fields, replace
+from functools import wraps
 from pathlib import Path
 
 import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.cli.stated_run import run_options
+from gaspart.cli.options import run_options
 from gaspart.errors import SceneError
 from gaspart.reproduction.config import checked_points
 from gaspart.reproduction.jobs.simulate import recipes
@@ -58,8 +59,9 @@ def test_the_header_of_a_file_restores_the_recipe(name, tmp_path):
 def test_the_stated_command_asks_for_the_same_run(name, tmp_path, monkeypatch, capsys):
     recipe, scene, asked = RECIPES[name], tmp_path / "scene.yaml", {}
 
-    def take(scene, engine, **settings):
-        asked.update(settings, scene=scene, engine=engine)
+    @wraps(entry.run)
+    def take(**settings):
+        asked.update(settings)
         raise SceneError("seen", True, "is enough")
 
     scene.write_text(dump_yaml(SCENE.to_dict()))

@@ -5,7 +5,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.cli import main
-from gaspart.scene.shear import flow
+from gaspart.scene.boundaries import flow
 
 pytestmark = pytest.mark.thorough
 

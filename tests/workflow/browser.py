@@ -26,6 +26,7 @@ def found_by(script, page, folder, width, dark=False):
     command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
     command += ["--allow-file-access-from-files", "--virtual-time-budget=20000"]
     command += [f"--blink-settings=preferredColorScheme={0 if dark else 1}"]
+    command += ["--force-prefers-reduced-motion"]  # the gas would run all these seconds
     done = subprocess.run(
         [*command, "--dump-dom", outer.as_uri()], capture_output=True, text=True, timeout=120
     )

@@ -123,7 +123,7 @@ def test_a_longer_run_reruns_its_experiment_only(smoke, tmp_path):
         (["src/gaspart/reproduction/figures/virial.py"], {"figure", "claims", "report", "all"}),
         pytest.param(
             ["src/gaspart/theory/virial.py"],
-            {"figure", "claims", "report", "all"},
+            {"figure", "claims", "play", "report", "all"},
             marks=pytest.mark.thorough,
         ),
         pytest.param(["src/gaspart/reproduction/registry.py"], {"report", "all"}, marks=pytest.mark.thorough),

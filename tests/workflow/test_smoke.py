@@ -117,8 +117,11 @@ const deviation = heads.find(head => head.textContent === "deviation");
 const before = rows().length;
 deviation.click(); const up = deviations();
 deviation.click(); const down = deviations();
-const agrees = [...document.querySelectorAll("#filter button")].find(one => one.dataset.verdict === "agrees");
-agrees.click();
+const choice = value => document.querySelector(`.filter button[value="${value}"]`);
+choice("agrees").click();
+choice("identity").click();
+const both = rows().filter(row => !row.hidden).map(row => `${row.dataset.verdict} ${row.dataset.kind}`);
+document.querySelector('.filter[data-key="kind"] button').click();
 const dots = [...document.querySelectorAll(".overview .dot")];
 const fold = document.getElementById(dots[0].hash.slice(1)).closest("details"), folded = !fold.open;
 location.hash = dots[0].hash; open();
@@ -137,7 +140,7 @@ return {
   answers, chosen: choices.slice(1).map(select => select.value), fields: form.querySelectorAll("g").length,
   costs: [...form.querySelectorAll("tbody tr")].map(row => row.cells[1].textContent),
   options: choices.map(select => select.options.length), first: document.querySelector("h2").id,
-  before, up, down, after: rows().length, width: document.documentElement.scrollWidth, folded,
+  both, before, up, down, after: rows().length, width: document.documentElement.scrollWidth, folded,
   unfolded: fold.open, dots: dots.length,
   shown: rows().filter(row => !row.hidden).map(row => row.dataset.verdict),
   verdicts: rows().filter(row => !row.hidden).every(row => {
@@ -169,6 +172,8 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert found["up"] == sorted(found["up"]) and found["down"] == sorted(found["up"], reverse=True)
     assert found["up"][0] < found["up"][-1]
     assert found["shown"] == ["agrees"] * sum(row["verdict"] == "agrees" for row in claims)
+    exact = sum((row["verdict"], row["kind"]) == ("agrees", "identity") for row in claims)
+    assert found["both"] == ["agrees identity"] * exact and exact
     assert found["verdicts"] and found["folded"] and found["unfolded"]
     assert found["dots"] == sum(row["kind"] != "family" for row in claims)
     assert len(found["images"]) >= 2 * len(smoke.figures) and min(found["images"]) > 0

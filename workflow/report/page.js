@@ -17,16 +17,18 @@ const compare = (a, b, sign) => {
     body.append(...[...body.rows].sort((a, b) => compare(value(a, column), value(b, column), sign)));
   });
 });
-const buttons = document.querySelectorAll("#filter button"), words = document.getElementById("words");
+const filters = [...document.querySelectorAll(".filter")], words = document.getElementById("words");
 const select = () => {
-  const wanted = document.querySelector("#filter button[aria-pressed=true]").dataset.verdict;
+  const wanted = filters.map(filter => [filter.dataset.key, filter.querySelector("[aria-pressed=true]").value]);
   const text = words.value.toLowerCase();
   [...body.rows].forEach(row => {
-    row.hidden = wanted !== "" && row.dataset.verdict !== wanted || !row.textContent.toLowerCase().includes(text);
+    const fits = wanted.every(([key, value]) => value === "" || row.dataset[key] === value);
+    row.hidden = !fits || !row.textContent.toLowerCase().includes(text);
   });
 };
-buttons.forEach(button => button.addEventListener("click", () => {
-  buttons.forEach(other => other.setAttribute("aria-pressed", other === button));
+filters.forEach(filter => filter.addEventListener("click", event => {
+  if (!event.target.matches("button")) return;
+  filter.querySelectorAll("button").forEach(other => other.setAttribute("aria-pressed", other === event.target));
   select();
 }));
 words.addEventListener("input", select);

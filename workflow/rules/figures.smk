@@ -99,7 +99,6 @@ rule report:
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
-        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=False,
     script:
@@ -117,7 +116,6 @@ use rule report as report_in_one_file with:
         figures=FIGURES,
         own_captions=OWN_CAPTIONS,
         films=FILMS,
-        opening=config.get("opening"),
         title=lambda wildcards: config["title"],
         one_file=True,
 
@@ -135,6 +133,5 @@ use rule report as report_of_first with:
         figures={figure: FIGURES[figure] for figure in FIRST},
         own_captions={},
         films={},
-        opening=None,
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
         one_file=False,

@@ -15,8 +15,7 @@ with job(snakemake):
 
     from gaspart.files import whole_file
     from gaspart.rendering import style
-    from gaspart.rendering.key import save_key_picture
-    from gaspart.rendering.legibility import flaws
+    from gaspart.rendering.legibility import flaws, save_key_picture
     from gaspart.reproduction import claims
     from gaspart.reproduction.figure import content_key, find_parts
     from gaspart.reproduction.points.point import Point

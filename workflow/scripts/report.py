@@ -3,6 +3,7 @@
 import json
 import os
 import platform
+from collections import Counter
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -35,7 +36,6 @@ def attributes(path):
 
 with job(snakemake):
     import jinja2
-    from markupsafe import Markup, escape
 
     from gaspart import __version__
     from gaspart.files import whole_file
@@ -74,13 +74,15 @@ with job(snakemake):
     films = page.films([Path(path) for path in given.films], params.one_file)
     posters = {Path(path).stem: page.address(Path(path), params.one_file) for path in given.posters}
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(given.template).parent),
+        loader=jinja2.FileSystemLoader([Path(path).parent for path in (given.template, *given.style)]),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = "{:.5g}".format
     statements = page.statements(read_yaml(given.statements), claims)
-    if not any(one["figure"] in of_figure for one in statements):  # a report of other figures
+    if any(one["figure"] in of_figure for one in statements):
+        statements = [one for one in statements if one["figure"] in ("", *of_figure)]
+    else:  # a report of other figures
         statements = []
     texts = [
         *captions.values(),
@@ -88,23 +90,24 @@ with job(snakemake):
         *(row[key] for row in claims for key in ("source", "allowance_source")),
     ]
     sources = references.cited_references(texts, references.read_references(given.references))
-    environment.filters["cite"] = lambda text: Markup(references.link_citations(str(escape(text)), sources))
+    environment.globals["pieces"] = lambda text: references.split_citations(text, sources)
+    ordered = [section for own in of_chapter.values() for section in own]
     text = environment.get_template(Path(given.template).name).render(
         title=params.title,
         one_file=params.one_file,
         folder=folder,
-        sections=[section for own in of_chapter.values() for section in own],
+        sections=ordered,
         chapters=of_chapter,
         pictures=pictures,
         films=films,
         posters=posters,
-        opening=params.opening if params.opening in films else next(iter(films), None),
+        play=given.play and (page.address(Path(given.play), True) if params.one_file else "play.html"),
         other_films=[film for film, beside in params.films.items() if beside not in of_figure],
         claims=claims,
-        findings=page.findings(read_yaml(given.findings), claims),
+        findings=page.findings(read_yaml(given.findings), ordered),
         statements=statements,
         headline=page.headline(claims),
-        verdicts=page.verdicts(claims),
+        filters={key: Counter(row[key] for row in claims) for key in ("verdict", "kind")},
         states=explore.states(measured),
         engines=explore.choice_of_engine(measured),
         references=sources,

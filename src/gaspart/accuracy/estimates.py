@@ -40,9 +40,8 @@ _DOUBT = 0.1
 
 
 def bound(freedom: float) -> float:
-    """Compute the ratio of the upper bound of an error to the error.
-
-    The ratio is computed from a quantile of the chi-square distribution with the given degrees of freedom.
+    """Compute the ratio of the upper bound of an error to the error. The ratio is computed from a quantile of
+    the chi-square distribution with the given degrees of freedom.
     """
     from scipy.special import chdtri
 
@@ -51,9 +50,8 @@ def bound(freedom: float) -> float:
 
 @dataclass(frozen=True)
 class Component:
-    """Value of one component of an observable, measured during `time`.
-
-    The component is a face, an axis, a pair of species, or the whole observable.
+    """Value of one component of an observable, measured during `time`. The component is a face, an axis, a
+    pair of species, or the whole observable.
 
     spectrum, stored : coefficients S and C of the squared error.
     freedom : degrees of freedom of the error.
@@ -84,9 +82,8 @@ class Component:
         return math.sqrt(self.spectrum / time + self.stored / time**2)
 
     def length(self, accuracy: float) -> float:
-        """Compute the measured time after which the upper bound of the relative error equals `accuracy`.
-
-        Runs that end at an accuracy (`--until`) use this bound. The result is inf if no time suffices.
+        """Compute the measured time after which the upper bound of the relative error equals `accuracy`. Runs
+        that end at an accuracy (`--until`) use this bound. The result is inf if no time suffices.
         """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf
@@ -102,10 +99,9 @@ class Component:
 
 
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
-    """Estimate each component of an observable of `gaspart measure` from a trajectory.
-
-    A scalar or a curve has one component, "". For a curve, value and error are root mean squares. Raises the
-    same SceneError as the function of `gaspart.analysis`.
+    """Estimate each component of an observable of `gaspart measure` from a trajectory. A scalar or a curve
+    has one component, "". For a curve, value and error are root mean squares. Raises the same SceneError as
+    the function of `gaspart.analysis`.
     """
     from gaspart.analysis.frames import measure_single
     from gaspart.analysis.run import open_run
@@ -136,9 +132,8 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
 
 
 def scales_of(observable: str, values: np.ndarray) -> np.ndarray:
-    """Return the values (n,) to which the relative errors of an observable's components refer.
-
-    Each refers to its own value, or, if some components vanish on average, to the root mean square of all.
+    """Return the values (n,) to which the relative errors of an observable's components refer. Each refers to
+    its own value, or, if some components vanish on average, to the root mean square of all.
     """
     if OBSERVABLES[observable].relative_to == "norm":
         return np.full(len(values), _norm(values))
@@ -193,9 +188,8 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
 
 
 def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, controls: int) -> Component:
-    """Estimate the mean of a series (K,) from its residual after regression on `controls` variables.
-
-    All intervals have the same length. The stored quantities are among the regressors.
+    """Estimate the mean of a series (K,) from its residual after regression on `controls` variables. All
+    intervals have the same length. The stored quantities are among the regressors.
     """
     from gaspart.analysis.statistics import correlated_mean
 
@@ -205,11 +199,10 @@ def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, contro
 
 
 def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> float:
-    """Return the degrees of freedom of the error of a series (K,) after the regression.
-
-    The regressors may explain a series up to rounding. For example, the momentum of a single particle
-    explains its impulses on two walls. Then the residual is constant although the series changes. The error
-    is known to be 0, and its degrees of freedom are computed from the changes of the series.
+    """Return the degrees of freedom of the error of a series (K,) after the regression. The regressors may
+    explain a series up to rounding. For example, the momentum of a single particle explains its impulses on
+    two walls. Then the residual is constant although the series changes. The error is known to be 0, and its
+    degrees of freedom are computed from the changes of the series.
     """
     from gaspart.analysis.statistics import count_changes
 
@@ -218,11 +211,10 @@ def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> flo
 
 
 def with_stores(series: np.ndarray, stores: np.ndarray, interval: float) -> Component:
-    """Estimate the mean of a series (K,) that includes changes of stored quantities.
-
-    `stores` (K + 1, n) are the n stored quantities at the ends of the intervals of equal length. The
-    coefficients of the changes come from a regression of the series. The sum of all changes remains in the
-    mean. The variance of this sum is twice the variance of the stored quantities.
+    """Estimate the mean of a series (K,) that includes changes of stored quantities. `stores` (K + 1, n) are
+    the n stored quantities at the ends of the intervals of equal length. The coefficients of the changes come
+    from a regression of the series. The sum of all changes remains in the mean. The variance of this sum is
+    twice the variance of the stored quantities.
     """
     from gaspart.analysis.statistics import correlated_mean
 

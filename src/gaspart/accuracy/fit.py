@@ -104,9 +104,8 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """Yield the relative variance of D of spheres, multiplied by the number of contacts.
-
-    The result is the median over all gases, because each gas has few replicas.
+    """Yield the relative variance of D of spheres, multiplied by the number of contacts. The result is the
+    median over all gases, because each gas has few replicas.
     """
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags extend to half of the run
     contacts = 0.5 * msd["count"] * length * msd.replicas

@@ -15,7 +15,8 @@ from typing import ClassVar
 import numpy as np
 
 from gaspart.accuracy.of_engine import AccuracyRequest, Adviser, Candidate
-from gaspart.engines.dsmc.settings import DSMC, MODELS
+from gaspart.engines.dsmc.engine import DSMC
+from gaspart.engines.dsmc.settings import MODELS
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.theory.conditions import Conditions
@@ -51,14 +52,12 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @staticmethod
     def variants(kind: type[DSMC]) -> tuple[DSMC, ...]:
-        """Return an engine for each collision model."""
         return tuple(kind(model=model) for model in MODELS)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with its default cells and step, and bounds on its errors.
-
-        Raises SceneError if the cells or the step are too coarse for the local conditions, or if the gas is
-        too dense for the Enskog model.
+        """Return the engine with its default cells and step, and bounds on its errors. Raises SceneError if
+        the cells or the step are too coarse for the local conditions, or if the gas is too dense for the
+        Enskog model.
         """
         conditions, dense = request.conditions, self.engine.model == "enskog"
         filled = float(conditions.filled.max())
@@ -72,16 +71,13 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @property
     def timed_as(self) -> str:
-        """Name of the collision model in the table of costs."""
         model = self.engine.model
         return self.engine.name if model == "boltzmann" else f"{self.engine.name} {model}"
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the step divided by the default step."""
         return (self.engine.for_scene(scene).time_step or 0.0) / self._own_step(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> DSMC:
-        """Return a copy with a step in default steps."""
         return self.engine.for_scene(scene).with_step(step * self._own_step(scene))
 
     def _own_step(self, scene: Scene) -> float:
@@ -89,17 +85,14 @@ class DsmcAdviser(Adviser[DSMC]):
 
     @property
     def limitations(self) -> str:
-        """Limitations of the model, and of all DSMC models."""
         lacks = {"boltzmann": "excluded volume", "enskog": "correlated collisions"}
         return f"{lacks[self.engine.model]}, positions of pairs"
 
     def describe(self) -> str:
-        """Return the name with the model, and the step if it is known."""
         step = "" if self.engine.time_step is None else f", time_step {self.engine.time_step:.4g}"
         return f"{self.engine.name}, model {self.engine.model}{step}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return also the effect of a step that is longer than the default."""
         remarks, step = super().notes(scene, observable, paths), self.engine.time_step
         longer = 1.0 if step is None else step / self._own_step(scene)
         if longer >= 1.5:
@@ -127,10 +120,8 @@ def boltzmann_error(request: AccuracyRequest) -> float:
 
 
 def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
-    """Bound the relative error of the Enskog equation.
-
-    In this equation, the centres of a colliding pair are one diameter apart, and the contact value is the
-    value at the local density.
+    """Bound the relative error of the Enskog equation. In this equation, the centres of a colliding pair are
+    one diameter apart, and the contact value is the value at the local density.
 
     cells : number of cells along each axis. Default: cells so narrow that they cause no error
     """
@@ -149,12 +140,10 @@ def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None)
 
 
 def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
-    """Bound the relative error due to cells and steps.
-
-    The error of the viscosity, and of observables that depend on it, is computed for the shortest mean free
-    path. The error of a rate is the error of averaging over a cell for a density that changes by a factor e
-    over the shortest length scale. The fraction of repeated or lost collisions is added, which is smaller
-    where cells contain more particles.
+    """Bound the relative error due to cells and steps. The error of the viscosity, and of observables that
+    depend on it, is computed for the shortest mean free path. The error of a rate is the error of averaging
+    over a cell for a density that changes by a factor e over the shortest length scale. The fraction of
+    repeated or lost collisions is added, which is smaller where cells contain more particles.
     """
     conditions, errors = request.conditions, engine.errors(request.scene)
     error = (errors.width + errors.step) * conditions.contrast**2 if request.transported else 0.0
@@ -168,10 +157,9 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
 
 
 def require_resolved(engine: DSMC, conditions: Conditions) -> None:
-    """Raise SceneError if cells or steps are too coarse for an inhomogeneous gas.
-
-    Cells and steps must not exceed the length or time over which the gas changes, the shortest mean free
-    path, or the shortest mean free time. In a homogeneous gas the state does not depend on cells and steps.
+    """Raise SceneError if cells or steps are too coarse for an inhomogeneous gas. Cells and steps must not
+    exceed the length or time over which the gas changes, the shortest mean free path, or the shortest mean
+    free time. In a homogeneous gas the state does not depend on cells and steps.
     """
     if conditions.axis is None:
         return
@@ -193,9 +181,8 @@ def require_resolved(engine: DSMC, conditions: Conditions) -> None:
 
 
 def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
-    """Return the side lengths (d,) of a cell, with 0 for an axis without a profile.
-
-    An axis without a profile has periodic faces and a single cell.
+    """Return the side lengths (d,) of a cell, with 0 for an axis without a profile. An axis without a profile
+    has periodic faces and a single cell.
     """
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
@@ -211,9 +198,8 @@ def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
 
 
 def _layers(request: AccuracyRequest) -> float:
-    """Return the relative error of a density due to layers of particles at walls.
-
-    In these layers, which are about a diameter thick, the density is Z times the density in the middle.
+    """Return the relative error of a density due to layers of particles at walls. In these layers, which are
+    about a diameter thick, the density is Z times the density in the middle.
     """
     conditions, scene = request.conditions, request.scene
     if request.observable != "density" or scene.container.periodic[-1]:

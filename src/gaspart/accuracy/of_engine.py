@@ -18,9 +18,8 @@ E = TypeVar("E", bound=Engine)
 
 @dataclass(frozen=True)
 class AccuracyRequest:
-    """Observable of a steady scene, and its requested relative accuracy.
-
-    The requested accuracy is for the standard error and the bias together.
+    """Observable of a steady scene, and its requested relative accuracy. The requested accuracy is for the
+    standard error and the bias together.
     """
 
     observable: str
@@ -72,9 +71,8 @@ class Adviser(Generic[E]):
         return (kind(),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with settings for a requested accuracy, and bounds on its errors.
-
-        Raises SceneError if the engine is not suitable.
+        """Return the engine with settings for a requested accuracy, and bounds on its errors. Raises
+        SceneError if the engine is not suitable.
         """
         return Candidate(self.engine)
 

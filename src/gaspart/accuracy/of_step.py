@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 
 from gaspart.accuracy.of_engine import AccuracyRequest, Adviser, Candidate
-from gaspart.engines.step.limits import DISORDER, LATER, SAFE, at_walls, contacts_per_step, missed_contacts
-from gaspart.engines.step.settings import TimeStepped
+from gaspart.engines.step.engine import TimeStepped
+from gaspart.engines.step.limits import LATER, at_walls, contacts_per_step, rate_error
 from gaspart.errors import SceneError
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.state.state import State
 
@@ -34,40 +34,32 @@ class StepAdviser(Adviser[TimeStepped]):
 
     @staticmethod
     def variants(kind: type[TimeStepped]) -> tuple[TimeStepped, ...]:
-        """Return the engine with a step that `candidate` replaces."""
         return (kind(1.0),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with the longest step that is sufficiently accurate.
-
-        Raises SceneError for a gas without collisions.
-        """
         conditions, initial = request.conditions, request.initial
         hot = _as_hot(initial, float(conditions.temperature.max())) if initial else None
-        missed = missed_contacts(1.0, True, hot) if hot else 0.0
+        square = rate_error(1.0, True, hot) if hot else 0.0
         free = float((conditions.path / np.maximum(conditions.speed, 1e-300)).min())
-        if not missed > 0.0 or not math.isfinite(free):
+        if not square > 0.0 or not math.isfinite(free):
             raise SceneError("time_step", None, "follows from contacts, which particles at rest do not have")
         assert hot is not None
-        met = contacts_per_step(1.0, hot)
-        linear, square = 0.0, SAFE * missed + DISORDER[True] * met**2
+        linear = 0.0
         if request.observable in _AT_WALLS:
-            linear = met * (LATER if request.observable == "density" else at_walls(request.scene))
+            at_face = LATER if request.observable == "density" else at_walls(request.scene)
+            linear = at_face * contacts_per_step(1.0, hot)
         most = _SHARE * request.accuracy
         longest = min(2.0 * most / (linear + math.sqrt(linear**2 + 4.0 * square * most)), _LONGEST * free)
         step = float(f"{0.95 * longest:.2g}")  # never above the longest step, for any rounding
         return Candidate(self.engine.with_step(step), discretisation=(linear + square * step) * step)
 
     def timed_step(self, scene: Scene) -> float:
-        """Return the step in diameters divided by the thermal speed of a plain gas."""
         return self.engine.time_step / _unit(scene)
 
     def at_step(self, scene: Scene, step: float, precision: str) -> TimeStepped:
-        """Return a copy with a step in the unit of `timed_step`, and a precision."""
         return replace(self.engine, time_step=step * _unit(scene), precision=precision)
 
     def describe(self) -> str:
-        """Return the name with step, precision and passes."""
         engine = self.engine
         return f"{engine.name}, time_step {engine.time_step:.4g}, {engine.precision}, {engine.passes} passes"
 

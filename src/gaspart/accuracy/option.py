@@ -88,9 +88,8 @@ class Option:
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:
-        """Compute the duration of a run from the duration of its measured part.
-
-        By default a quarter of the run is discarded, and at least the time `settling`.
+        """Compute the duration of a run from the duration of its measured part. By default a quarter of the
+        run is discarded, and at least the time `settling`.
         """
         return max(measured + self.settling, measured / (1.0 - self.discarded))
 
@@ -129,9 +128,8 @@ def fluid_option(
 
 
 def sort_by_cost(options: list[Option]) -> list[Option]:
-    """Sort options: first accurate options by cost, then the others by accuracy.
-
-    The exact engine comes first unless another engine is cheaper by a factor of at least `WORTH`.
+    """Sort options: first accurate options by cost, then the others by accuracy. The exact engine comes first
+    unless another engine is cheaper by a factor of at least `WORTH`.
     """
 
     def key(option: Option) -> tuple[float, float]:
@@ -142,10 +140,9 @@ def sort_by_cost(options: list[Option]) -> list[Option]:
 
 
 def replicas_of(option: Option, longest: float) -> int:
-    """Return the number of replicas among which the measured time is divided.
-
-    The number is at most one replica per processor. Each replica must be much longer than its equilibration,
-    at least as long as the shortest allowed run, and at most as long as `longest`.
+    """Return the number of replicas among which the measured time is divided. The number is at most one
+    replica per processor. Each replica must be much longer than its equilibration, at least as long as the
+    shortest allowed run, and at most as long as `longest`.
     """
     if not math.isfinite(option.measured):
         return 1
@@ -161,9 +158,8 @@ def replicas_of(option: Option, longest: float) -> int:
 
 
 def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
-    """Return the engines that can simulate a scene and an observable, the exact engine first.
-
-    Also return the reason for each rejected engine, under the engine's name in the table.
+    """Return the engines that can simulate a scene and an observable, the exact engine first. Also return the
+    reason for each rejected engine, under the engine's name in the table.
     """
     suitable, refused = [], {}
     for engine in candidate_engines():
@@ -203,10 +199,8 @@ def make_request(target: Target, accuracy: float, conditions: Conditions) -> Acc
 
 
 def depends_on_transport(scene: Scene, observable: str) -> bool:
-    """Return True if an observable depends on transport coefficients.
-
-    This is true for observables with lags, and for all observables if the scene drives a flow of heat or
-    momentum.
+    """Return True if an observable depends on transport coefficients. This is true for observables with lags,
+    and for all observables if the scene drives a flow of heat or momentum.
     """
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)

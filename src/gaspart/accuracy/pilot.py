@@ -31,7 +31,7 @@ from gaspart.kernels.compile.sources import source_digest
 from gaspart.simulation import Simulation
 from gaspart.state.given import state_at_time_zero
 from gaspart.theory.conditions import Conditions
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe
 from gaspart.trajectory.run import WriteOptions, extend, record
@@ -107,9 +107,8 @@ class Pilot:
 
     @property
     def main(self) -> str:
-        """Name of the largest component in units of its scale, and of these the least accurate one.
-
-        If symmetry makes some components of a vector vanish, it is another one.
+        """Name of the largest component in units of its scale, and of these the least accurate one. If
+        symmetry makes some components of a vector vanish, it is another one.
         """
         sizes = {
             name: (abs(part.value) / part.scale if part.scale > 0.0 else 0.0, part.accuracy)
@@ -129,10 +128,8 @@ class Pilot:
 
 
 def speed_of(target: Target, engine: Engine) -> float:
-    """Measure the CPU seconds that an engine needs per unit of simulated time.
-
-    Once the kernels are compiled, this takes a fraction of a second. Raises SceneError if the engine cannot
-    simulate the scene.
+    """Measure the CPU seconds that an engine needs per unit of simulated time. Once the kernels are compiled,
+    this takes a fraction of a second. Raises SceneError if the engine cannot simulate the scene.
     """
     if target.correlated:  # sampling takes longer than the simulation between samples
         return _speed_of_sampling(target, engine)
@@ -151,10 +148,7 @@ def speed_of(target: Target, engine: Engine) -> float:
 
 
 def _speed_of_sampling(target: Target, engine: Engine) -> float:
-    """Measure the speed of a run with correlations by two short runs.
-
-    The first run compiles the kernels.
-    """
+    """Measure the speed of a run with correlations by two short runs. The first run compiles the kernels."""
     took, correlations = math.inf, target.correlations(engine)
     interval = correlations.lags * correlations.interval
     with scratch_folder() as folder:
@@ -173,9 +167,8 @@ def _make(
     scheduled: tuple[float, float, Correlations | None],
     displacements: bool = True,
 ) -> Path:
-    """Run a target with a schedule: duration, time between frames, and correlations.
-
-    Pilots store `displacements` because other observables need them too.
+    """Run a target with a schedule: duration, time between frames, and correlations. Pilots store
+    `displacements` because other observables need them too.
     """
     duration, interval, correlations = scheduled
     recipe = Recipe(
@@ -186,9 +179,8 @@ def _make(
 
 
 def require_defined(target: Target) -> None:
-    """Raise SceneError for an observable that is undefined in a scene for runs of any length.
-
-    The test is a measurement in a very short run.
+    """Raise SceneError for an observable that is undefined in a scene for runs of any length. The test is a
+    measurement in a very short run.
     """
     if target.correlated:  # the engines state these requirements
         return
@@ -200,9 +192,8 @@ def require_defined(target: Target) -> None:
 
 
 def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
-    """Return the components of an observable, or the reason why the run is too short.
-
-    Raises SceneError if the observable is undefined in the scene.
+    """Return the components of an observable, or the reason why the run is too short. Raises SceneError if
+    the observable is undefined in the scene.
     """
     try:
         estimates = components(trajectory, target.observable)
@@ -254,9 +245,8 @@ def _worst(estimates: dict[str, Component]) -> Component:
 
 
 def _equilibrate(path: Path) -> float:
-    """Return the `settling_time` of a pilot, after extending the pilot until it is steady.
-
-    The pilot is steady if the settling time lies within the discarded part.
+    """Return the `settling_time` of a pilot, after extending the pilot until it is steady. The pilot is
+    steady if the settling time lies within the discarded part.
     """
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
@@ -268,11 +258,9 @@ def _equilibrate(path: Path) -> float:
 
 
 def settling_time(trajectory: xr.Dataset) -> float:
-    """Return the time after which a run is steady.
-
-    The test uses the kinetic energy and the mean position of the particles along each axis with walls. Each
-    of these series has reached its mean over the second half of the run, and from then on stays within the
-    range of the second half.
+    """Return the time after which a run is steady. The test uses the kinetic energy and the mean position of
+    the particles along each axis with walls. Each of these series has reached its mean over the second half
+    of the run, and from then on stays within the range of the second half.
     """
     with open_run(trajectory, 0.0, sheared=True) as run:
         velocities, masses = run.peculiar, run.masses[run.moving]
@@ -294,9 +282,8 @@ def _settled_at(series: np.ndarray) -> int:
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
-    """Return a hash that identifies the content of a pilot.
-
-    All observables that need the same stored data have the same hash, so they share pilots.
+    """Return a hash that identifies the content of a pilot. All observables that need the same stored data
+    have the same hash, so they share pilots.
     """
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
@@ -339,10 +326,9 @@ class Trials:
     _begun: float = field(default_factory=time.process_time)
 
     def begin(self) -> None:
-        """Find the candidates and run the pilot of the exact engine.
-
-        This pilot takes half of the CPU time if another engine may be cheaper. Raises SceneError if no engine
-        can simulate the scene, or if the observable is undefined in the scene.
+        """Find the candidates and run the pilot of the exact engine. This pilot takes half of the CPU time if
+        another engine may be cheaper. Raises SceneError if no engine can simulate the scene, or if the
+        observable is undefined in the scene.
         """
         engines, self.refused = suitable_engines(self.target)
         if not engines or not engines[0].reference:
@@ -374,10 +360,7 @@ class Trials:
         self._ask_another()
 
     def make(self, candidate: Candidate, part: float = 0.5) -> Pilot:
-        """Run another pilot with a fraction of the CPU time.
-
-        The third and the fourth pilot get less time.
-        """
+        """Run another pilot with a fraction of the CPU time. The third and the fourth pilot get less time."""
         if candidate not in self.speeds:
             raise self._no_engine()
         spent = 0.0 if self.pilots else time.process_time() - self._begun
@@ -408,9 +391,8 @@ class Trials:
         return any(pilot.engine == engine for pilot in self.pilots)
 
     def bias(self, candidate: Candidate) -> float:
-        """Return the bound on a candidate's bias, from theory or from its pilot.
-
-        The bound from the pilot is its difference from the pilot of the exact engine.
+        """Return the bound on a candidate's bias, from theory or from its pilot. The bound from the pilot is
+        its difference from the pilot of the exact engine.
         """
         own = [pilot for pilot in self.known if pilot.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
@@ -430,9 +412,8 @@ class Trials:
 
     @property
     def reference(self) -> Pilot:
-        """Longest pilot of a sufficiently accurate engine, otherwise of any engine.
-
-        Raises SceneError if no pilot measured the observable.
+        """Longest pilot of a sufficiently accurate engine, otherwise of any engine. Raises SceneError if no
+        pilot measured the observable.
         """
         accurate = [pilot for pilot in self.known if self._is_accurate(pilot)] or self.known
         if accurate:
@@ -444,10 +425,9 @@ class Trials:
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
-        """Return the noise of the observable in a run with an engine.
-
-        If the engine stores impulses, the noise comes from a pilot with impulses, otherwise from a pilot that
-        counts contacts. Raises SceneError if no pilot measured the observable.
+        """Return the noise of the observable in a run with an engine. If the engine stores impulses, the
+        noise comes from a pilot with impulses, otherwise from a pilot that counts contacts. Raises SceneError
+        if no pilot measured the observable.
         """
         with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):
@@ -492,10 +472,9 @@ class Trials:
 
 
 def raised_bias(candidate: Candidate, own: Pilot, pilots: list[Pilot]) -> float:
-    """Raise the bound on a candidate's bias to its measured difference from the exact engine.
-
-    The difference between the pilots of the two engines in the same component counts, including its error, if
-    it is significant.
+    """Raise the bound on a candidate's bias to its measured difference from the exact engine. The difference
+    between the pilots of the two engines in the same component counts, including its error, if it is
+    significant.
     """
     exact = [pilot for pilot in pilots if pilot.engine.reference]
     if candidate.engine.reference or not exact or exact[0].main not in own.components:

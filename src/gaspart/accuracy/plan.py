@@ -30,7 +30,7 @@ from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.replicas import differ
-from gaspart.trajectory.until import Requirement, Until
+from gaspart.trajectory.run_options import Requirement, Until
 
 ACCURACIES = 1e-8, 1.0
 """Smallest and largest allowed relative accuracy; the smallest is the limit of float64 sums and of the table.
@@ -102,9 +102,8 @@ class Plan:
 
     @property
     def finite_size(self) -> tuple[float, float]:
-        """Relative difference from an infinite gas, to first order, and a sufficient number of particles.
-
-        For this number of particles the difference is a quarter of the accuracy.
+        """Relative difference from an infinite gas, to first order, and a sufficient number of particles. For
+        this number of particles the difference is a quarter of the accuracy.
         """
         gas = known.fluid_of(self.target.scene)
         differing, power = getattr(bulk, f"finite_{self.target.declared.bulk}")(gas)
@@ -136,10 +135,9 @@ class Plan:
 
     @property
     def longest_interval(self) -> float:
-        """Maximum time between frames.
-
-        For a diffusion coefficient the interval follows from the lags. For an observable that is sampled at
-        frames, the interval is the interval of the pilot, whose noise was measured.
+        """Maximum time between frames. For a diffusion coefficient the interval follows from the lags. For an
+        observable that is sampled at frames, the interval is the interval of the pilot, whose noise was
+        measured.
         """
         declared = self.target.declared
         if declared.samples == "paths":
@@ -149,10 +147,8 @@ class Plan:
 
     @property
     def recipe(self) -> Recipe:
-        """Recipe of the recommended run, one for all replicas.
-
-        The duration is fixed if the noise comes from the table, or if the observable cannot end a run.
-        Otherwise the run ends when it is accurate.
+        """Recipe of the recommended run, one for all replicas. The duration is fixed if the noise comes from
+        the table, or if the observable cannot end a run. Otherwise the run ends when it is accurate.
         """
         target, duration = self.target, self.duration
         scene, engine, correlations = target.scene, self.best.engine, None
@@ -191,9 +187,8 @@ def plan(
     pilot_seconds: float = PILOT_SECONDS,
     announce: Announce = lambda text: None,
 ) -> Plan:
-    """Find the cheapest run that measures an observable of `gaspart measure` to a relative accuracy.
-
-    The observable may name one wall, such as `pressure:x low`.
+    """Find the cheapest run that measures an observable of `gaspart measure` to a relative accuracy. The
+    observable may name one wall, such as `pressure:x low`.
 
     accuracy : relative accuracy: the standard error plus the bound on systematic errors, divided by the
         value. A run with `--until` requires this accuracy of its standard error alone.
@@ -219,9 +214,8 @@ def plan_from_table(
     accuracy: float,
     budget: float | None = None,
 ) -> Plan:
-    """Make a `plan` from the table; its CPU times are for the machine of the table.
-
-    Raises SceneError if the table does not cover the scene or the observable.
+    """Make a `plan` from the table; its CPU times are for the machine of the table. Raises SceneError if the
+    table does not cover the scene or the observable.
     """
     gas, target = known.tabulated_target(scene, observable)
     accuracy, budget = _check_arguments(accuracy, budget)
@@ -280,9 +274,8 @@ def _check_arguments(accuracy: float, budget: float | None) -> tuple[float, floa
 
 
 def _options(trials: Trials, budget: float | None) -> list[Option]:
-    """Return an option for each candidate, the best first.
-
-    Raises SceneError if no pilot measured the observable.
+    """Return an option for each candidate, the best first. Raises SceneError if no pilot measured the
+    observable.
     """
     target, longest = trials.target, trials.reference
     assert longest.component is not None
@@ -299,19 +292,17 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
 
 
 def _can_share(target: Target, engine: Engine) -> bool:
-    """Return True if the measured time can be divided among replicas.
-
-    This requires runs that end when they are accurate and that differ in their seeds. For other runs the
-    error of the mean would have to come from the scatter of a few replicas.
+    """Return True if the measured time can be divided among replicas. This requires runs that end when they
+    are accurate and that differ in their seeds. For other runs the error of the mean would have to come from
+    the scatter of a few replicas.
     """
     return target.declared.ends_runs and differ(target.scene, engine)
 
 
 def _longest(target: Target, pilot: Pilot) -> float:
-    """Return the longest useful duration.
-
-    For an observable of positions the number of frames is limited. The pilot shows how much each frame
-    contributes to the accuracy. A longer time between frames may not improve this.
+    """Return the longest useful duration. For an observable of positions the number of frames is limited. The
+    pilot shows how much each frame contributes to the accuracy. A longer time between frames may not improve
+    this.
     """
     if target.declared.samples != "structure":
         return math.inf
@@ -320,11 +311,9 @@ def _longest(target: Target, pilot: Pilot) -> float:
 
 
 def _least(target: Target, engine: Engine, pilot: Pilot) -> float:
-    """Return the shortest duration of a run.
-
-    This time covers the minimum equilibration and measurement of the table, crossings of a container with
-    walls, the time after which the pilot was steady, and the time steps between frames. With correlations it
-    also covers the number of frames that an error estimate needs.
+    """Return the shortest duration of a run. This time covers the minimum equilibration and measurement of
+    the table, crossings of a container with walls, the time after which the pilot was steady, and the time
+    steps between frames. With correlations it also covers the number of frames that an error estimate needs.
     """
     scene, frequency = target.scene, target.frequency
     collisions = (EQUILIBRATED + LEAST) / frequency if frequency > 0.0 else 0.0

@@ -48,7 +48,7 @@ from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT
 from gaspart.errors import SceneError
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.trajectory.replicas import files_of, opened_together
-from gaspart.trajectory.until import Requirement, Until, examined_before
+from gaspart.trajectory.run_options import Requirement, Until, examined_before
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,17 +93,15 @@ class AccuracyStatus:
 
     @property
     def of_starts(self) -> float:
-        """Relative standard error of the mean of replicas due to their initial energies.
-
-        The error is 0 for a single run, because its interval refers to its own energy.
+        """Relative standard error of the mean of replicas due to their initial energies. The error is 0 for a
+        single run, because its interval refers to its own energy.
         """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
     @property
     def error(self) -> float:
-        """Standard error of the value. For replicas it includes the scatter of the starts.
-
-        For a single run it is the error at the energy of the run.
+        """Standard error of the value. For replicas it includes the scatter of the starts. For a single run
+        it is the error at the energy of the run.
         """
         return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
@@ -160,9 +158,8 @@ def _student(freedom: float) -> float:
 
 
 def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
-    """Return an estimate with the larger error of two examinations.
-
-    At the earlier examination the measured part was shorter by the factor `ratio`.
+    """Return an estimate with the larger error of two examinations. At the earlier examination the measured
+    part was shorter by the factor `ratio`.
     """
     from gaspart.analysis.estimate import Estimate
 
@@ -173,7 +170,6 @@ def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Es
 
 def combine_replicas(estimates: Sequence[Estimate]) -> Estimate:
     """Average independent estimates, and compute the error of the mean from their errors.
-
     `gaspart.analysis.replicas` uses the same formula, because the scatter of a few replicas is a poor
     estimate.
     """
@@ -217,9 +213,8 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examination of a run, or of all replicas; `report` receives the result.
-
-    The last examination is stored, because its frames cannot change any more.
+    """Examination of a run, or of all replicas; `report` receives the result. The last examination is stored,
+    because its frames cannot change any more.
     """
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
@@ -229,7 +224,6 @@ class Examiner:
 
     def __call__(self, runs: Sequence[xr.Dataset], until: Until, frames: int) -> float:
         """Return the largest error divided by its required value, from the first frames of open trajectories.
-
         Return 0 to stop a run without a maximum duration in which nothing happens that could be measured.
         """
         reached = self.examine(runs, until.accuracies, frames)
@@ -320,9 +314,8 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
 
 
 def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> _Estimates:
-    """Measure each component of an observable as the mean over runs, with its scale.
-
-    The component is "" for a scalar. Pressures are restricted to the requested face.
+    """Measure each component of an observable as the mean over runs, with its scale. The component is "" for
+    a scalar. Pressures are restricted to the requested face.
     """
     observable = requirement.observable
     results = [components(data, observable, requirement.start) for data in runs]

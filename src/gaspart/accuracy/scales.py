@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from gaspart import theory
-from gaspart.scene.face_checks import attempt_rate, piston_end
+from gaspart.scene.boundaries import attempt_rate, piston_end
 from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Particle, Species
@@ -63,19 +63,16 @@ class Scales:
 
     @property
     def event_time(self) -> float:
-        """Time between collisions, or the time to cross the container; infinite if nothing moves.
-
-        The crossing time is used if there are no collisions, and for a `free_molecular` gas with walls.
+        """Time between collisions, or the time to cross the container; infinite if nothing moves. The
+        crossing time is used if there are no collisions, and for a `free_molecular` gas with walls.
         """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
-        """Suggested time between frames, rounded to two digits; None if nothing moves.
-
-        The suggested time is `event_time`, or longer if the suggested duration would otherwise have more than
-        1000 frames.
+        """Suggested time between frames, rounded to two digits; None if nothing moves. The suggested time is
+        `event_time`, or longer if the suggested duration would otherwise have more than 1000 frames.
         """
         if not math.isfinite(self.event_time):
             return None
@@ -83,10 +80,8 @@ class Scales:
 
     @property
     def duration(self) -> float | None:
-        """Suggested duration, a multiple of the interval.
-
-        The duration is 200 collisions of a particle and at least ten crossings; for a `free_molecular` gas it
-        is 200 crossings.
+        """Suggested duration, a multiple of the interval. The duration is 200 collisions of a particle and at
+        least ten crossings; for a `free_molecular` gas it is 200 crossings.
         """
         if self.interval is None:
             return None
@@ -131,11 +126,10 @@ class Scales:
 
 
 def _fallen(scene: Scene) -> tuple[float, float] | None:
-    """Return the temperatures at the start and in equilibrium of a dilute gas under gravity.
-
-    The energy of a particle is conserved: d / 2 T + m g <z>. <z> is T / (m g) - h / (exp(m g h / T) - 1) in
-    equilibrium between walls at the distance h, and h / 2 at the start. None for a dense gas, if energy is
-    exchanged, or if particles differ or do not start at random positions everywhere.
+    """Return the temperatures at the start and in equilibrium of a dilute gas under gravity. The energy of a
+    particle is conserved: d / 2 T + m g <z>. <z> is T / (m g) - h / (exp(m g h / T) - 1) in equilibrium
+    between walls at the distance h, and h / 2 at the start. None for a dense gas, if energy is exchanged, or
+    if particles differ or do not start at random positions everywhere.
     """
     pulls = [(axis, abs(pull)) for axis, pull in enumerate(scene.gravity or ()) if pull != 0.0]
     kinds = scene.species
@@ -160,10 +154,8 @@ def _fallen(scene: Scene) -> tuple[float, float] | None:
 
 
 def scales(scene: Scene) -> Scales:
-    """Compute the scales of a scene.
-
-    For a gas without further features the collision rate follows from theory, otherwise from the rates of all
-    pairs of kinds.
+    """Compute the scales of a scene. For a gas without further features the collision rate follows from
+    theory, otherwise from the rates of all pairs of kinds.
     """
     d, gas_rates = scene.dimension, rates(scene, True, _few_kinds(scene))
     thermal = gas_rates.speed / math.sqrt(MEAN_SQUARE[d])
@@ -185,9 +177,8 @@ def scales(scene: Scene) -> Scales:
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """Return the kinds of particles that move; if there are many, a few representatives.
-
-    A representative has the mean volume, mass and energy of the kinds that it replaces.
+    """Return the kinds of particles that move; if there are many, a few representatives. A representative has
+    the mean volume, mass and energy of the kinds that it replaces.
     """
     kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
@@ -200,9 +191,8 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 
 
 def collision_frequency(scene: Scene) -> float:
-    """Compute the collisions per time of a particle of a plain gas from theory.
-
-    The frequency is 0 if theory does not cover the gas.
+    """Compute the collisions per time of a particle of a plain gas from theory. The frequency is 0 if theory
+    does not cover the gas.
     """
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:

@@ -56,9 +56,8 @@ class Scatter:
 
 
 def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
-    """Compute the scatter of an observable between a run and runs with other seeds.
-
-    Runs that start from the same state have the same energy, so their scatter is 0.
+    """Compute the scatter of an observable between a run and runs with other seeds. Runs that start from the
+    same state have the same energy, so their scatter is 0.
     """
     if GIVEN_START in run.attrs:
         return Scatter()
@@ -85,9 +84,8 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Compute the standard deviation of the initial potential energy.
-
-    The standard deviation for independent uniform positions is reduced by a factor for the excluded volume.
+    """Compute the standard deviation of the initial potential energy. The standard deviation for independent
+    uniform positions is reduced by a factor for the excluded volume.
     """
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
@@ -107,9 +105,8 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 
 
 def _compressibility(scene: Scene, kinds: list[Species]) -> float:
-    """Return the factor by which excluded volume reduces the scatter of positions.
-
-    This factor is the reduced compressibility of the fluid.
+    """Return the factor by which excluded volume reduces the scatter of positions. This factor is the reduced
+    compressibility of the fluid.
     """
     d = scene.dimension
     filled = 0.0
@@ -143,9 +140,8 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 
 def _of_column(target: Target, deviation: float) -> float | None:
-    """Compute the standard deviation of an observable under gravity from hydrostatics.
-
-    Return None if theory does not cover the column.
+    """Compute the standard deviation of an observable under gravity from hydrostatics. Return None if theory
+    does not cover the column.
     """
     column = gravity_column(target.scene)
     assert column is not None

@@ -22,10 +22,9 @@ _CONTACTS = 2e4
 
 @cache
 def factor(dimension: int, engine: str, precision: str, count: int) -> float:
-    """Measure the CPU time of a contact on this machine, divided by the table's time.
-
-    The reference gas of the engine (`timed_at`) is simulated and timed three times with `count` particles,
-    after a short run from a lattice. `engine` is the engine's name in the table.
+    """Measure the CPU time of a contact on this machine, divided by the table's time. The reference gas of
+    the engine (`timed_at`) is simulated and timed three times with `count` particles, after a short run from
+    a lattice. `engine` is the engine's name in the table.
     """
     growth = max(1.0, count / _MOST) ** _GROWTH
     count = min(max(count, _LEAST), _MOST)

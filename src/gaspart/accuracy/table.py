@@ -79,11 +79,9 @@ def has_biases(engine: str) -> bool:
 def bias(
     dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
 ) -> float:
-    """Return a bound on the relative error of an engine, with two standard errors.
-
-    The default engine is the time-stepped engine. The bound is inf if no error was measured. Between two
-    packing fractions of the table the larger error of the two is used, because errors may change sign between
-    them.
+    """Return a bound on the relative error of an engine, with two standard errors. The default engine is the
+    time-stepped engine. The bound is inf if no error was measured. Between two packing fractions of the table
+    the larger error of the two is used, because errors may change sign between them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
@@ -97,10 +95,9 @@ def bias(
 def seconds(
     dimension: int, fraction: float, engine: str, precision: str = "float64", step: float = 0.0
 ) -> float:
-    """Return the CPU time of one exact contact, on the machine of the table.
-
-    The result is inf if the time was not measured. Outside the packing fractions of the table, an engine
-    without time steps has the time of the nearest gas.
+    """Return the CPU time of one exact contact, on the machine of the table. The result is inf if the time
+    was not measured. Outside the packing fractions of the table, an engine without time steps has the time of
+    the nearest gas.
     """
     eta, value, _ = _curve(dimension, engine, precision, step, "seconds")
     if not eta.size or (step and not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND):
@@ -109,11 +106,10 @@ def seconds(
 
 
 def noise(dimension: int, fraction: float, observable: str) -> float:
-    """Return the relative variance of an observable multiplied by the number of contacts.
-
-    The result is inf if the noise was not measured. In a gas more dilute than all gases of the table, the
-    variance of Z decreases as the square of (Z - 1) / Z, because Z - 1 is proportional to the number of
-    contacts. The other variances are equal to their values in the most dilute gas of the table.
+    """Return the relative variance of an observable multiplied by the number of contacts. The result is inf
+    if the noise was not measured. In a gas more dilute than all gases of the table, the variance of Z
+    decreases as the square of (Z - 1) / Z, because Z - 1 is proportional to the number of contacts. The other
+    variances are equal to their values in the most dilute gas of the table.
     """
     eta, value, _ = _curve(dimension, _EXACT, "float64", 0.0, f"noise_{observable}")
     if not eta.size:
@@ -131,9 +127,8 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 
 
 def prices(engine: str) -> dict[str, float]:
-    """Return the time per event with each measured feature, divided by the time without it.
-
-    The figure `price_of_features` measures the features.
+    """Return the time per event with each measured feature, divided by the time without it. The figure
+    `price_of_features` measures the features.
     """
     rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
     return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
@@ -186,10 +181,9 @@ class Price:
 
 
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
-    """Return the cost factors of an observable of a scene with an engine.
-
-    The costs were measured in a gas of 4000 spheres at a packing fraction of 0.2 (figure
-    `price_of_features`). A feature that the scene does not use costs no time.
+    """Return the cost factors of an observable of a scene with an engine. The costs were measured in a gas of
+    4000 spheres at a packing fraction of 0.2 (figure `price_of_features`). A feature that the scene does not
+    use costs no time.
     """
     has = {
         "walls": not scene.is_periodic,
@@ -206,10 +200,8 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 
 
 def _single(engine: Engine, dimension: int) -> float | None:
-    """Compute the time per contact in single precision divided by the time in double precision.
-
-    The ratio is for the gas with which the engine is timed; None for an engine that was not timed in both
-    precisions.
+    """Compute the time per contact in single precision divided by the time in double precision. The ratio is
+    for the gas with which the engine is timed; None for an engine that was not timed in both precisions.
     """
     adviser = adviser_of(engine)
     fraction, step = adviser.timed_at

@@ -18,16 +18,17 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
+from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
 
 # Errors of a gas in equilibrium due to the kinetic equation and the time step, from theory.
 
 
 def model_error(packing_fraction: float, dimension: int, equation: str, observable: str) -> float:
     """Return the absolute error of an observable due to the kinetic equation that an engine solves.
-
     `equation` is `Engine.equation`. The error is relative to hard spheres or discs. It is inf if the
     observable is undefined in either case, such as D of discs. The Boltzmann equation has a contact value of
     1 and no virial pressure. The Enskog model uses the contact value of Carnahan and Starling for spheres and
@@ -42,7 +43,7 @@ def model_error(packing_fraction: float, dimension: int, equation: str, observab
     if math.isnan(exact) or math.isnan(own):
         return math.inf
     remembers = OBSERVABLES[observable].memory and packing_fraction > 0.01
-    return abs(own / exact - 1.0) + (theory.ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
+    return abs(own / exact - 1.0) + (ERPENBECK_WOOD_UNCERTAINTY if remembers else 0.0)
 
 
 FEWEST = 64
@@ -53,9 +54,8 @@ For smaller gases pilot runs are made.
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """Return the gas of a scene: a fluid in a periodic container.
-
-    Raises SceneError if the errors of the scene were not measured.
+    """Return the gas of a scene: a fluid in a periodic container. Raises SceneError if the errors of the
+    scene were not measured.
     """
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
@@ -81,9 +81,8 @@ def fluid_of(scene: Scene) -> Gas:
 
 
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
-    """Return the gas of a scene, and the target to measure.
-
-    Raises SceneError if the table does not cover the scene or the observable.
+    """Return the gas of a scene, and the target to measure. Raises SceneError if the table does not cover the
+    scene or the observable.
     """
     if observable not in observables_with(tabulated=True):
         raise SceneError(
@@ -117,9 +116,8 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 
 
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
-    """Return the option of an engine with the settings of a row of the table.
-
-    `step` has the unit of the table.
+    """Return the option of an engine with the settings of a row of the table. `step` has the unit of the
+    table.
     """
     gas = fluid_of(target.scene)
     each = table.seconds(gas.dimension, gas.packing_fraction, timed_as(engine), engine.precision, step)
@@ -130,10 +128,8 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 
 
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """Return the engine with bounds on its errors, from measurements or from theory.
-
-    In theory these are the errors of the kinetic equation, and the errors of cells and time steps that the
-    engine computes.
+    """Return the engine with bounds on its errors, from measurements or from theory. In theory these are the
+    errors of the kinetic equation, and the errors of cells and time steps that the engine computes.
     """
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(timed_as(engine)):

@@ -25,9 +25,9 @@ from gaspart.analysis.paths import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine, reference_engine
 from gaspart.errors import SceneError
-from gaspart.scene.face_checks import refuse_open
-from gaspart.scene.faces import wall_of
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import wall_of
 from gaspart.simulation import Simulation
 from gaspart.state.initial import initial_state
 from gaspart.state.optional_tallies import OptionalTally
@@ -71,10 +71,8 @@ class Target:
 
     @classmethod
     def from_name(cls, scene: Scene, name: str) -> Target:
-        """Return the target for a name of the command line: `Z`, or `pressure:x low`.
-
-        Raises SceneError for an unknown name, for an observable that is undefined in the scene, and for a
-        wall that does not exist.
+        """Return the target for a name of the command line: `Z`, or `pressure:x low`. Raises SceneError for
+        an unknown name, for an observable that is undefined in the scene, and for a wall that does not exist.
         """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
@@ -91,10 +89,9 @@ class Target:
 
     @cached_property
     def start(self) -> State | None:
-        """State from which pilots start; None for the default initial state.
-
-        A state other than the default is a settled state. If particles are compressed and no settled state is
-        known, the state at time 0 is stored, because the compression takes long.
+        """State from which pilots start; None for the default initial state. A state other than the default
+        is a settled state. If particles are compressed and no settled state is known, the state at time 0 is
+        stored, because the compression takes long.
         """
         if self.settled is not None:
             return self.settled
@@ -113,12 +110,10 @@ class Target:
 
     @cached_property
     def frequency(self) -> float:
-        """Collisions of a particle per time.
-
-        The frequency is computed from theory, for a gas at its initial temperature, or for the column that
-        the gas forms under gravity. In a free-molecular gas between walls, it is the number of crossings of
-        the container per time. If the particles start at rest, it is measured in the second half of a short
-        run.
+        """Collisions of a particle per time. The frequency is computed from theory, for a gas at its initial
+        temperature, or for the column that the gas forms under gravity. In a free-molecular gas between
+        walls, it is the number of crossings of the container per time. If the particles start at rest, it is
+        measured in the second half of a short run.
         """
         frequency = rates(self.scene, dense=True).frequency + rate_at_scatterers(self.scene)
         if frequency > 0.0:
@@ -137,9 +132,8 @@ class Target:
 
     @cached_property
     def crossing(self) -> float:
-        """Time in which a particle crosses the shortest side of the container.
-
-        Raises SceneError if nothing moves.
+        """Time in which a particle crosses the shortest side of the container. Raises SceneError if nothing
+        moves.
         """
         scene = self.scene
         squares = [
@@ -177,7 +171,6 @@ class Target:
 
     def tallies(self, engine: Engine) -> tuple[OptionalTally, ...]:
         """Return the optional tallies with which a run of an engine measures the observable more accurately.
-
         The tallies are impulses along the last axis. For pressures on walls across a single axis, the tallies
         are along this axis.
         """
@@ -197,9 +190,8 @@ class Target:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Maximum time between frames, and maximum length of a run, that lose no accuracy.
-
-        For diffusion they follow from the lags of the fit, and from the number of correlated frames.
+        """Maximum time between frames, and maximum length of a run, that lose no accuracy. For diffusion they
+        follow from the lags of the fit, and from the number of correlated frames.
         """
         if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
@@ -224,9 +216,8 @@ class Target:
         return frames * interval, interval, None
 
     def correlations(self, engine: Engine) -> Correlations:
-        """Return the correlations that the observable needs.
-
-        Raises SceneError for a scene whose particles do not collide.
+        """Return the correlations that the observable needs. Raises SceneError for a scene whose particles do
+        not collide.
         """
         lags = self.declared.lags
         if not self.frequency > 0.0:

@@ -34,10 +34,9 @@ def _freud() -> ModuleType:
 
 
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
-    """Return a freud box and the positions in freud's coordinates.
-
-    The origin of freud's coordinates is the centre of the box. For discs z = 0. Units of length that do not
-    suit freud's Voronoi diagram are changed by a power of two, which changes no other bit.
+    """Return a freud box and the positions in freud's coordinates. The origin of freud's coordinates is the
+    centre of the box. For discs z = 0. Units of length that do not suit freud's Voronoi diagram are changed
+    by a power of two, which changes no other bit.
     """
     longest = math.frexp(max(map(float, lengths)))[1]  # a power of two
     scale = 2.0 ** (min(max(longest, 0), _WIDEST) - longest)
@@ -48,11 +47,10 @@ def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tup
 
 
 def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Compute the complex hexatic order parameter psi_6 of each disc, shape (N,).
-
-    The order parameter is the mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours.
-    |psi_6| is 1 in a triangular lattice. The absolute value of the mean over discs is large only if the bonds
-    of all discs have the same orientation. Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
+    """Compute the complex hexatic order parameter psi_6 of each disc, shape (N,). The order parameter is the
+    mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours. |psi_6| is 1 in a triangular
+    lattice. The absolute value of the mean over discs is large only if the bonds of all discs have the same
+    orientation. Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
     neighbours = _freud().locality.Voronoi().compute(system).nlist  # not freud's default of 6
@@ -62,9 +60,8 @@ def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.
 
 
 def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> float:
-    """Compute the order parameter Q_6 of all bonds between spheres and their 12 nearest neighbours.
-
-    Q_6 is 0.5745 in a face-centred cubic lattice and about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
+    """Compute the order parameter Q_6 of all bonds between spheres and their 12 nearest neighbours. Q_6 is
+    0.5745 in a face-centred cubic lattice and about 1 / sqrt(12 N) in a fluid. Steinhardt, Nelson and
     Ronchetti, Phys. Rev. B 28, 784 (1983).
     """
     order = _freud().order.Steinhardt(l=6, average=False, wl=False, weighted=False, wl_normalize=False)
@@ -73,11 +70,9 @@ def global_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarr
 
 
 def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Compute the averaged bond order q_6 of each sphere, shape (N,).
-
-    The complex order parameters q_6m are averaged over the sphere and its 12 nearest neighbours. The
-    resulting q_6 is about 0.48 in a crystal near melting and about 0.15 in a fluid. Lechner and Dellago, J.
-    Chem. Phys. 129, 114707 (2008).
+    """Compute the averaged bond order q_6 of each sphere, shape (N,). The complex order parameters q_6m are
+    averaged over the sphere and its 12 nearest neighbours. The resulting q_6 is about 0.48 in a crystal near
+    melting and about 0.15 in a fluid. Lechner and Dellago, J. Chem. Phys. 129, 114707 (2008).
     """
     order = _freud().order.Steinhardt(l=6, average=True, wl=False, weighted=False, wl_normalize=False)
     order.compute(_system(positions, lengths), neighbors={"num_neighbors": NEIGHBOURS})
@@ -87,12 +82,11 @@ def local_steinhardt(positions: np.ndarray, lengths: Sequence[float] | np.ndarra
 def structure_factor(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, highest: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors.
-
-    Returns the wave numbers along x (K,) and along y (L,) up to `highest`, and S(k), shape (K, L). `frames`
-    are positions (T, N, 2). S(k) is averaged over the frames and computed at the wave vectors that are
-    compatible with the periodic container. S(0) is NaN. freud is not used, because its structure factors
-    reject two dimensions, and its diffraction pattern rejects boxes that are not square.
+    """Compute S(k) = |sum exp(i k.r)|^2 / N of discs on a grid of wave vectors. Returns the wave numbers
+    along x (K,) and along y (L,) up to `highest`, and S(k), shape (K, L). `frames` are positions (T, N, 2).
+    S(k) is averaged over the frames and computed at the wave vectors that are compatible with the periodic
+    container. S(0) is NaN. freud is not used, because its structure factors reject two dimensions, and its
+    diffraction pattern rejects boxes that are not square.
     """
     unit = 2.0 * np.pi / np.asarray(lengths)
     waves = [step * np.arange(-int(highest / step), int(highest / step) + 1) for step in unit]

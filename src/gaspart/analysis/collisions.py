@@ -25,10 +25,11 @@ from gaspart.engines import EventDriven
 from gaspart.errors import SceneError, SimulationError
 from gaspart.files import FileKind, begins_with, open_regular, writing
 from gaspart.keys.values import count_of, number
+from gaspart.scene.boundaries import refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
 from gaspart.system import descriptor_path, memory
+from gaspart.theory.free_flights import free_time_pdf
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.trajectory.provenance import git_revision, versions
@@ -50,6 +51,8 @@ def collision_data(
     scene: Scene, collisions: int, seed: int | tuple[int, ...] = 0, equilibration: float = 0.0
 ) -> xr.Dataset:
     """Record the collisions of a scene under the event-driven engine.
+
+    The required memory is proportional to the number of recorded collisions.
 
     Parameters
     ----------
@@ -77,10 +80,6 @@ def collision_data(
         below 1, or if the data would exceed the memory of this machine.
     SimulationError
         If no collision occurs.
-
-    Notes
-    -----
-    The required memory is proportional to the number of recorded collisions.
 
     Examples
     --------
@@ -186,6 +185,10 @@ def _check_memory(collisions: int, scene: Scene) -> None:
 def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     """Measure the contact value of g(r) for equal particles from their collision rate.
 
+    For M collisions of N particles in the time t, chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with
+    S = 2 pi (2D) or 4 pi (3D). This formula is exact in equilibrium (S. Chapman and T. G. Cowling (1970)).
+    The temperature is computed from the mean speed of approach, which is sqrt(pi kT / m).
+
     Parameters
     ----------
     data : Dataset
@@ -202,26 +205,6 @@ def contact_value(data: xr.Dataset, blocks: int = 20) -> Estimate:
     ------
     SceneError
         If the particles of the scene are not all equal.
-
-    Notes
-    -----
-    For M collisions of N particles in the time t, chi = 2 M / (N t S rho sigma^(d-1) sqrt(kT / (pi m))), with
-    S = 2 pi (2D) or 4 pi (3D). This formula is exact in equilibrium [1]_. The temperature is computed from
-    the mean speed of approach, which is sqrt(pi kT / m).
-
-    References
-    ----------
-    .. [1] S. Chapman and T. G. Cowling (1970).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> data = gp.collision_data(scene, collisions=500, seed=1)
-    >>> estimate = gp.contact_value(data)
-    >>> abs(estimate.value - 1.5) < 10.0 * estimate.error
-    True
     """
     scene = Scene.from_dict(json.loads(data.attrs["scene"]))
     if not scene.alike:
@@ -295,6 +278,11 @@ _LONGEST = 5.0  # upper end of the bins in mean free times
 def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     """Measure the probability density of the time between two collisions of a particle.
 
+    Uncertainties come from the scatter of 16 groups of particles. The uncertainty of an empty bin is NaN.
+    Theory exists for equal particles. The theoretical density is `free_flights.free_time_pdf`, which assumes
+    independent collisions. The theoretical mean free time and path are exact in equilibrium, apart from the
+    uncertainty of the contact value. They include the correction for the finite number of particles.
+
     Parameters
     ----------
     simulation : Simulation
@@ -315,24 +303,6 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     SceneError
         If the record is missing or too short, or if the scene has gravity, walls or fewer than 16 moving
         particles.
-
-    Notes
-    -----
-    Uncertainties come from the scatter of 16 groups of particles. The uncertainty of an empty bin is NaN.
-    Theory exists for equal particles. The theoretical density is `theory.free_time_pdf`, which assumes
-    independent collisions. The theoretical mean free time and path are exact in equilibrium, apart from the
-    uncertainty of the contact value. They include the correction for the finite number of particles.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.record_events = True
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.free_flight_times(simulation).sizes["free_time"]
-    40
     """
     scene, state = simulation.scene, simulation.state
     refuse_sheared(scene, "free flights are those of a gas at rest")
@@ -377,9 +347,8 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
 
 
 def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tuple[float, float]] | None:
-    """Compute the theoretical density of free times, and the mean free time and path.
-
-    The density is averaged over each bin, shape (bins,). Return None if no theory exists.
+    """Compute the theoretical density of free times, and the mean free time and path. The density is averaged
+    over each bin, shape (bins,). Return None if no theory exists.
     """
     gas, state = simulation.scene.gas, simulation.state
     if gas is None or gas.packing_fraction > theory.HIGHEST_PACKING_FRACTION[gas.dimension]:
@@ -388,7 +357,7 @@ def _theory(simulation: Simulation, edges: np.ndarray) -> tuple[np.ndarray, tupl
     settings = {**gas.parameters, "temperature": temperature}
     inner = np.linspace(edges[:-1], edges[1:], 5)  # Boole's rule
     weights = np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
-    density = weights @ theory.free_time_pdf(inner, **settings)
+    density = weights @ free_time_pdf(inner, **settings)
     # `collision_rate_finite_size_factor` refers to a temperature defined with d N degrees of freedom
     fewer = math.sqrt((gas.count - 1) / gas.count)
     shape = gas.packing_fraction, gas.dimension

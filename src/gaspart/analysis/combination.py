@@ -43,6 +43,10 @@ def replicas(
 ) -> Observable:
     """Measure a named observable as the mean over independent runs of one scene.
 
+    The uncertainty is the standard error of the mean, computed from the scatter between runs. It requires no
+    assumption about correlations within a run. Its number of degrees of freedom (`freedom`) is the number of
+    runs minus one.
+
     Parameters
     ----------
     name : str
@@ -70,12 +74,6 @@ def replicas(
         difference); if two runs are identical (same initial state and same seed, or same initial state in a
         scene without random numbers); or if curves have different coordinates, such as densities in different
         bins. Also under the conditions of the observable's function.
-
-    Notes
-    -----
-    The uncertainty is the standard error of the mean, computed from the scatter between runs. It requires no
-    assumption about correlations within a run. Its number of degrees of freedom (`freedom`) is the number of
-    runs minus one.
 
     Examples
     --------
@@ -181,9 +179,8 @@ def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
 
 
 def _state_at(simulation: Simulation, time: float) -> bytes:
-    """Return the state of a simulation at its present time or at an earlier time.
-
-    To obtain an earlier state, the simulation is run again.
+    """Return the state of a simulation at its present time or at an earlier time. To obtain an earlier state,
+    the simulation is run again.
     """
     if time < simulation.time:
         simulation = simulation.again()
@@ -198,9 +195,8 @@ def _bits(*vectors: np.ndarray) -> bytes:
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of the other runs.
-
-    Replicas differ from each other only in the seed or in the initial state.
+    """Raise SceneError unless a run is a replica of the other runs. Replicas differ from each other only in
+    the seed or in the initial state.
     """
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
@@ -230,9 +226,8 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 
 
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Find the first difference between two nested dictionaries: its dotted key and both values.
-
-    Return None if they are equal.
+    """Find the first difference between two nested dictionaries: its dotted key and both values. Return None
+    if they are equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}

@@ -12,10 +12,11 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.faces import FACES, Open
-from gaspart.scene.gas import plain_mixture
+from gaspart.scene.boundaries import refuse_sheared
+from gaspart.scene.faces import Open
+from gaspart.scene.facts import plain_mixture
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.tally import StressTally
 

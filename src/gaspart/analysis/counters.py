@@ -33,12 +33,9 @@ _BLOCKS = 16
 def compressibility_factor(source: Source, start: float | None = None) -> Observable:
     """Measure Z = PV/(N k_B T) of a periodic scene by the virial theorem.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    Z = 1 + sum |dr . dp| / (d N k_B T t), summed over the collisions in the time t. In a collision the
+    centres are separated by dr, and the momentum dp is exchanged. The temperature is k_B T = 2 E / (d (N -
+    1)), with the kinetic energy E relative to the centre of mass.
 
     Returns
     -------
@@ -52,22 +49,6 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
     SceneError
         If the scene has walls, fixed particles or contacts that lose energy; if there are too few frames; or
         if no collision occurs.
-
-    Notes
-    -----
-    Z = 1 + sum |dr . dp| / (d N k_B T t), summed over the collisions in the time t. In a collision the
-    centres are separated by dr, and the momentum dp is exchanged. The temperature is k_B T = 2 E / (d (N -
-    1)), with the kinetic energy E relative to the centre of mass.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> round(float(gp.analysis.compressibility_factor(simulation).theory), 2)
-    1.78
     """
     with open_run(source, start) as run:
         require_defined("Z", run.scene)
@@ -78,12 +59,20 @@ def compressibility_factor(source: Source, start: float | None = None) -> Observ
 def wall_pressure(source: Source, start: float | None = None) -> Observable:
     """Measure the pressure on each face of the container that is a wall.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    The pressure is a sum over particle sizes a of F_a / A_a. F_a is the force of particles of this size, and
+    A_a is the area of the face that their centres can reach. Areas covered by fixed particles and interior
+    walls are excluded (`gaspart.scene.accessible`). If faces move, the instantaneous area is used. By the
+    contact theorem, this pressure is k_B T times the density at contact, summed over sizes. In an ideal gas
+    the pressure is n k_B T, where n is the density in the accessible volume. Particles that never touch the
+    face do not contribute. On the faces across the axis of a loaded piston, the force is divided by the
+    cross-section of the container, because the load is defined with this area. The mean pressure is then
+    equal to the load. The force on a face (`wall_force`) does not depend on the definition of an area.
+
+    A contact of a particle at rest is not an event. Gravity gives such a particle momentum that no event
+    removes. If particles are at rest in two successive frames, this momentum is added to the momentum that
+    the floor receives. If the run has stored impulses along an axis, their known fluctuations are subtracted
+    from the pressures on the faces across this axis (`gaspart.analysis.impulses`). The attribute `estimator`
+    then names this method.
 
     Returns
     -------
@@ -101,32 +90,6 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
         If the scene has no walls; if there are too few frames; if particles rest at positions where obstacles
         may support them; or if there are particles of several sizes and the file does not contain the
         momentum per accessible area.
-
-    Notes
-    -----
-    The pressure is a sum over particle sizes a of F_a / A_a. F_a is the force of particles of this size, and
-    A_a is the area of the face that their centres can reach. Areas covered by fixed particles and interior
-    walls are excluded (`gaspart.scene.accessible`). If faces move, the instantaneous area is used. By the
-    contact theorem, this pressure is k_B T times the density at contact, summed over sizes. In an ideal gas
-    the pressure is n k_B T, where n is the density in the accessible volume. Particles that never touch the
-    face do not contribute. On the faces across the axis of a loaded piston, the force is divided by the
-    cross-section of the container, because the load is defined with this area. The mean pressure is then
-    equal to the load. The force on a face (`wall_force`) does not depend on the definition of an area.
-
-    A contact of a particle at rest is not an event. Gravity gives such a particle momentum that no event
-    removes. If particles are at rest in two successive frames, this momentum is added to the momentum that
-    the floor receives. If the run has stored impulses
-    along an axis, their known fluctuations are subtracted from the pressures on the faces across this axis
-    (`gaspart.analysis.impulses`). The attribute `estimator` then names this method.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    >>> sim.advance(duration=20.0)
-    >>> gp.analysis.wall_pressure(sim).face.values.tolist()
-    ['x low', 'x high', 'y low', 'y high']
     """
     with _open_walls(source, start, "pressure") as (run, ends):
         about = describe("pressure", run, accessible_lengths(run, run.time[:1])[0])
@@ -136,12 +99,8 @@ def wall_pressure(source: Source, start: float | None = None) -> Observable:
 def wall_force(source: Source, start: float | None = None) -> Observable:
     """Measure the force on each face of the container that is a wall.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    The force is the momentum given to the face divided by the time. Unlike the pressure (`wall_pressure`),
+    the force does not depend on an area.
 
     Returns
     -------
@@ -154,20 +113,6 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
     SceneError
         If the scene has no walls; if there are too few frames; or if particles rest at positions where
         obstacles may support them.
-
-    Notes
-    -----
-    The force is the momentum given to the face divided by the time. Unlike the pressure (`wall_pressure`),
-    the force does not depend on an area.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-    >>> sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    >>> sim.advance(duration=20.0)
-    >>> gp.analysis.wall_force(sim).estimate.attrs["units"]
-    'energy / length'
     """
     with _open_walls(source, start, "force") as (run, ends):
         return _of_faces("wall_force", run, ends, describe("force", run))
@@ -175,9 +120,8 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run, and find the frames (K + 1,) that bound its K blocks.
-
-    Raises SceneError if the observable `name`, a property of faces, is undefined.
+    """Open a run, and find the frames (K + 1,) that bound its K blocks. Raises SceneError if the observable
+    `name`, a property of faces, is undefined.
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
@@ -238,10 +182,9 @@ def on_walls(run: Run, ends: np.ndarray, name: str) -> tuple[np.ndarray, np.ndar
 
 
 def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
-    """Compute the momentum (K, 2d) that particles at rest give to each face.
-
-    The K intervals lie between the frames `ends` (K + 1,). A particle at rest touches without events. If no
-    face exerts a force along itself, the momentum of a floor follows from the balance
+    """Compute the momentum (K, 2d) that particles at rest give to each face. The K intervals lie between the
+    frames `ends` (K + 1,). A particle at rest touches without events. If no face exerts a force along itself,
+    the momentum of a floor follows from the balance
 
         change of the momentum = momentum from gravity + impulses of the lower face - impulses of the upper
         face.
@@ -273,9 +216,8 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 
 def count_at_rest(run: Run) -> int:
-    """Count the particles that rest: their velocity along gravity is 0 in two successive frames.
-
-    If contacts lose no energy, no particle comes to rest, and only the first two frames are read.
+    """Count the particles that rest: their velocity along gravity is 0 in two successive frames. If contacts
+    lose no energy, no particle comes to rest, and only the first two frames are read.
     """
     along = np.flatnonzero(run.scene.gravity or ())
     moving = np.flatnonzero(run.moving)
@@ -298,12 +240,8 @@ def refuse_rest(run: Run, rule: str) -> None:
 def collision_rate(source: Source, start: float | None = None) -> Observable:
     """Measure the collision rate: the mean number of collisions of a moving particle per time.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    The rate is (2 M + F) / (N t) for N moving particles in the time t. M is the number of collisions between
+    two moving particles, and F is the number of collisions of moving particles with fixed particles.
 
     Returns
     -------
@@ -316,21 +254,6 @@ def collision_rate(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If there are too few frames, no collision occurs, or particles come to rest.
-
-    Notes
-    -----
-    The rate is (2 M + F) / (N t) for N moving particles in the time t. M is the number of collisions between
-    two moving particles, and F is the number of collisions of moving particles with fixed particles.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.collision_rate(simulation).estimate.attrs["units"]
-    '1 / time'
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("collision_rate", run.scene)

@@ -23,9 +23,8 @@ _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
 
 def units_in(units: str, dimension: int) -> str:
-    """Replace exponents that depend on the dimension d by numbers.
-
-    For example, `mass length^(2-d) / time` becomes `mass length^-1 / time` in three dimensions.
+    """Replace exponents that depend on the dimension d by numbers. For example, `mass length^(2-d) / time`
+    becomes `mass length^-1 / time` in three dimensions.
     """
 
     def number(match: re.Match[str]) -> str:
@@ -38,10 +37,8 @@ def units_in(units: str, dimension: int) -> str:
 
 
 def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
-    """Return the powers of length, mass and time in the declared units.
-
-    The numerical value of an observable changes with these powers if the units of length, mass and time
-    change.
+    """Return the powers of length, mass and time in the declared units. The numerical value of an observable
+    changes with these powers if the units of length, mass and time change.
     """
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")
@@ -93,9 +90,7 @@ DIMENSIONS: dict[str, Along] = {
 
 @dataclass(frozen=True)
 class Named:
-    """Declaration of a named observable.
-
-    Description:
+    """Declaration of a named observable. Description:
 
     title : name of the observable in words. With the symbol, it is the label of a plotted axis.
     definition : definition in one sentence.

@@ -16,12 +16,12 @@ import numpy as np
 from gaspart.analysis import series
 from gaspart.analysis.conditions import DISCS, GROUPS
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.motion import axes_of
 from gaspart.analysis.observable import LEAST_INTERVALS, Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.paths import Groups, groups_of, stride_of, unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import number
@@ -51,14 +51,20 @@ def diffusion_coefficient(
 ) -> Observable:
     """Measure the diffusion coefficient D from the slope of the mean-squared displacement.
 
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
+    permits. D is the first slope that agrees with the previous slope within two standard errors of their
+    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
+    missing. D is then the last slope, and the estimated size of the tail is added to the error.
+
+    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
+    D does not exist, for example for discs and between walls.
+
+    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
+    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
+    the derivative of the theoretical mean-squared displacement.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, as in `mean_squared_displacement`.
     particles : sequence of int, optional
         Measure only these particles, as in `mean_squared_displacement`. For fewer than 16 particles, such as
         a single tracer, the run is divided into 16 blocks, and each block must contain the lags.
@@ -86,30 +92,6 @@ def diffusion_coefficient(
         If there is neither a periodic axis nor a lag, if the run is too short, or if it has too few frames.
         If no lag is passed, also if the slope still changes at the longest lags, and for discs whose total
         momentum persists for more than 12 collisions. The squared displacement of such discs grows as t ln t.
-
-    Notes
-    -----
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle, as far as the run
-    permits. D is the first slope that agrees with the previous slope within two standard errors of their
-    difference. If no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is
-    missing. D is then the last slope, and the estimated size of the tail is added to the error.
-
-    D at a `lag` is the integral of the velocity autocorrelation up to this lag. This integral exists even if
-    D does not exist, for example for discs and between walls.
-
-    The theoretical D of spheres in a periodic cube is the result of Erpenbeck and Wood with the correction of
-    Yeh and Hummer; its uncertainty is half of this correction. If a lag is passed, the theoretical value is
-    the derivative of the theoretical mean-squared displacement.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.diffusion_coefficient(simulation, lag=1.0).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start, about=about) as run:
         require_defined("D", run.scene, species=species, particles=particles, lag=lag, about=about)
@@ -146,10 +128,9 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags, in frames, of 6, 12, 24, 48 ... collisions of a particle.
-
-    The run is divided into `parts` equal parts. The longest lag is at most half of the frames of a part.
-    Raises SceneError under the conditions of `lags_of_slopes`.
+    """Return the lags, in frames, of 6, 12, 24, 48 ... collisions of a particle. The run is divided into
+    `parts` equal parts. The longest lag is at most half of the frames of a part. Raises SceneError under the
+    conditions of `lags_of_slopes`.
     """
     return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
@@ -178,10 +159,9 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags one frame shorter and one frame longer than a lag, in frames.
-
-    Raises SceneError for a lag that is shorter than the time between frames, or longer than half of a part.
-    The run is divided into `parts` equal parts.
+    """Return the lags one frame shorter and one frame longer than a lag, in frames. Raises SceneError for a
+    lag that is shorter than the time between frames, or longer than half of a part. The run is divided into
+    `parts` equal parts.
     """
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
@@ -200,10 +180,8 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """Return the lags, in frames, of 6, 12 and 24 collisions of a particle.
-
-    The slope that gives D lies between the second and the third lag. The first lag serves to test that the
-    slope is constant.
+    """Return the lags, in frames, of 6, 12 and 24 collisions of a particle. The slope that gives D lies
+    between the second and the third lag. The first lag serves to test that the slope is constant.
     """
     first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
     return first, middle, last
@@ -227,10 +205,9 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """Return a mask (d,) of the axes along which momentum persists for `lag` frames.
-
-    The momentum is the total momentum of the moving particles. It persists if it is conserved, or if more
-    than half of it remains, for example with a few obstacles among many particles.
+    """Return a mask (d,) of the axes along which momentum persists for `lag` frames. The momentum is the
+    total momentum of the moving particles. It persists if it is conserved, or if more than half of it
+    remains, for example with a few obstacles among many particles.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -243,9 +220,8 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 
 
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
-    """Compute half of the slopes of the squared displacements between consecutive lags.
-
-    The shape is (G, stretches, d).
+    """Compute half of the slopes of the squared displacements between consecutive lags. The shape is (G,
+    stretches, d).
     """
     squares = groups.means(
         lambda paths: np.array(
@@ -256,12 +232,11 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
-    """Find the first slope that agrees with the previous one, among slopes at increasing lags.
-
-    The slopes have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected
-    tail. The tail is 0 if the slope agrees with the previous slope within its error along every axis. `sizes`
-    (G,) are the numbers of particles in the groups. Raises SceneError if the last slopes change by more than
-    a slow tail explains.
+    """Find the first slope that agrees with the previous one, among slopes at increasing lags. The slopes
+    have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected tail. The tail
+    is 0 if the slope agrees with the previous slope within its error along every axis. `sizes` (G,) are the
+    numbers of particles in the groups. Raises SceneError if the last slopes change by more than a slow tail
+    explains.
     """
     for k in range(1, slopes.shape[1]):
         change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
@@ -285,12 +260,20 @@ def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tup
 def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
     """Measure the Maxwell-Stefan coefficient of mutual diffusion of two species.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
+    Then
+
+        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
+
+    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
+    first slope that agrees with the previous slope within two standard errors (E. Helfand, Phys. Rev. 119, 1
+    (1960)) (R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005)). The attribute `lags`
+    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
+    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
+    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
+    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
+    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
+    are more accurate.
 
     Returns
     -------
@@ -303,38 +286,6 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
         If there are not exactly two species; if there are fixed particles, walls or contacts that lose
         energy; for discs, for which the coefficient does not exist; if frames are too far apart or the run is
         too short; or if the slope still changes at the longest lags.
-
-    Notes
-    -----
-    X_1 and X_2 are the mean displacements of the species, and x_1 and x_2 their fractions of the N particles.
-    Then
-
-        D_12 = x_1 x_2 N / (2 d) d/dt <|X_1(t) - X_2(t)|^2>,
-
-    Slopes are computed between the lags of 6, 12, 24, 48 ... collisions of a particle. The derivative is the
-    first slope that agrees with the previous slope within two standard errors [1]_ [2]_. The attribute `lags`
-    contains the two lags of this slope. The longest lag is a 32nd of the run, but at least 24 collisions. If
-    no slope agrees, but the last slope has changed by less than 6 %, only a slow tail is missing. The
-    estimated size of the tail is added to the error. Fick's coefficient is D_12 times the thermodynamic
-    factor, which is 1 for species of one size. If the species differ only in their numbers, D_12 is exactly
-    the D of a single particle. X_1 - X_2 is a single vector for any number of particles, so only longer runs
-    are more accurate.
-
-    References
-    ----------
-    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
-    .. [2] R. Krishna and J. M. van Baten, Ind. Eng. Chem. Res. 44, 6939 (2005).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((5.0, 5.0, 5.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.4, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(60.0)
-    >>> gp.analysis.mutual_diffusion(simulation).estimate.attrs["units"]
-    'length^2 / time'
     """
     with open_run(source, start) as run:
         require_defined("mutual_diffusion", run.scene)
@@ -350,9 +301,8 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """Yield the slopes of the squared change of a path between consecutive lags, per frame.
-
-    Each slope is a series over the time origins at which both lags end within the run.
+    """Yield the slopes of the squared change of a path between consecutive lags, per frame. Each slope is a
+    series over the time origins at which both lags end within the run.
     """
     for early, late in itertools.pairwise(lags):
         number = len(path) - late
@@ -360,10 +310,9 @@ def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
 
 
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
-    """Find the first slope that no longer changes.
-
-    Returns the index of the slope and the estimated size of the neglected tail. The criteria are the same as
-    in `settled_slope`. Raises SceneError if the last slopes change by more than a slow tail explains.
+    """Find the first slope that no longer changes. Returns the index of the slope and the estimated size of
+    the neglected tail. The criteria are the same as in `settled_slope`. Raises SceneError if the last slopes
+    change by more than a slow tail explains.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]

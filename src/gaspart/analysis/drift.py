@@ -88,9 +88,8 @@ class Trend:
 
 
 def drift_of(*sources: Source, start: float | None = None) -> str:
-    """Describe the quantities that drift in the measured part of a run or of replicas.
-
-    The text is "" if none drifts.
+    """Describe the quantities that drift in the measured part of a run or of replicas. The text is "" if none
+    drifts.
     """
     return describe([trends(source, start) for source in sources])
 
@@ -115,11 +114,9 @@ def _describe(name: str, replicas: list[Trend]) -> str:
 
 
 def trends(source: Source, start: float | None = None) -> dict[str, Trend]:
-    """Return the trend of each tested quantity in the measured part of a run.
-
-    The quantities are the number of particles, if faces are open; the kinetic energy of a particle, and of a
-    particle of each species; the mean position along each axis with walls; and the collision rate at constant
-    temperature.
+    """Return the trend of each tested quantity in the measured part of a run. The quantities are the number
+    of particles, if faces are open; the kinetic energy of a particle, and of a particle of each species; the
+    mean position along each axis with walls; and the collision rate at constant temperature.
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         if len(run.time) < LEAST_FRAMES:
@@ -244,12 +241,11 @@ def _of_particles(run: Run, slow: dict[int, np.ndarray], count: float, thermal: 
 
 
 def _slowest(run: Run, count: np.ndarray, energy: np.ndarray) -> dict[int, tuple[float, float]]:
-    """Return the longest relaxation time and inverse angular frequency along each axis.
-
-    These are the axes with walls or, without walls, all axes. The slowest mode is half a wave between walls,
-    or a wave, with the wavenumber k. It relaxes like diffusion with the coefficient k_B T / (m nu), where nu
-    is the collision rate, and oscillates at least with k sqrt(k_B T / m). A piston makes the oscillation
-    slower. A face of accommodation a exchanges energy in one of 1 / a hits.
+    """Return the longest relaxation time and inverse angular frequency along each axis. These are the axes
+    with walls or, without walls, all axes. The slowest mode is half a wave between walls, or a wave, with the
+    wavenumber k. It relaxes like diffusion with the coefficient k_B T / (m nu), where nu is the collision
+    rate, and oscillates at least with k sqrt(k_B T / m). A piston makes the oscillation slower. A face of
+    accommodation a exchanges energy in one of 1 / a hits.
     """
     scene = run.scene
     kinds = scene.moving_kinds

@@ -17,18 +17,16 @@ Number = Any
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """Number with its standard uncertainty (0 if exact), or an array of such numbers.
-
-    `freedom` is the number of degrees of freedom of the uncertainty. If the uncertainty comes from the
-    scatter of a few samples, `freedom` is the number of samples minus one. Otherwise it is infinite. With a
-    finite `freedom`, a deviation follows Student's t distribution. Sums, products and quotients propagate the
-    uncertainties to first order, as for independent numbers. They propagate the degrees of freedom by the
-    formula of Welch and Satterthwaite (Biometrics Bulletin 2, 110 (1946)).
-
-    Arrays are broadcast to a common shape. The result for each element is bitwise identical to the result for
-    a single number. An estimate of an array has a length, and can be indexed and iterated over along its
-    first axis. Its array must not be changed. Raises ValueError for a negative uncertainty, for degrees of
-    freedom that are not positive, and for arrays whose shapes cannot be broadcast.
+    """Number with its standard uncertainty (0 if exact), or an array of such numbers. `freedom` is the number
+    of degrees of freedom of the uncertainty. If the uncertainty comes from the scatter of a few samples,
+    `freedom` is the number of samples minus one. Otherwise it is infinite. With a finite `freedom`, a
+    deviation follows Student's t distribution. Sums, products and quotients propagate the uncertainties to
+    first order, as for independent numbers. They propagate the degrees of freedom by the formula of Welch and
+    Satterthwaite (Biometrics Bulletin 2, 110 (1946)). Arrays are broadcast to a common shape. The result for
+    each element is bitwise identical to the result for a single number. An estimate of an array has a length,
+    and can be indexed and iterated over along its first axis. Its array must not be changed. Raises
+    ValueError for a negative uncertainty, for degrees of freedom that are not positive, and for arrays whose
+    shapes cannot be broadcast.
     """
 
     value: Number
@@ -50,9 +48,8 @@ class Estimate:
 
     @classmethod
     def of(cls, dataset: xarray.Dataset, name: str) -> Estimate:
-        """Return the variable `name` of a dataset, with `name`_error as its uncertainty.
-
-        If the variable `name`_freedom exists and is positive, it gives the number of degrees of freedom.
+        """Return the variable `name` of a dataset, with `name`_error as its uncertainty. If the variable
+        `name`_freedom exists and is positive, it gives the number of degrees of freedom.
         """
         column, error = dataset[name], dataset[f"{name}_error"]
         if f"{name}_freedom" not in dataset:
@@ -63,19 +60,15 @@ class Estimate:
 
     @classmethod
     def stack(cls, estimates: Sequence[Estimate]) -> Estimate:
-        """Join estimates of the same shape along a new first axis.
-
-        An empty sequence gives an empty array.
-        """
+        """Join estimates of the same shape along a new first axis. An empty sequence gives an empty array."""
         parts = ([estimate._parts[k] for estimate in estimates] for k in range(3))
         return cls(*parts)
 
     @property
     def deviation(self) -> Number:
-        """Value divided by its standard deviation; infinite for an exact number other than 0.
-
-        If the uncertainty comes from a few samples, the deviation follows Student's t distribution. It is
-        then converted to the Gaussian deviation that has the same probability.
+        """Value divided by its standard deviation; infinite for an exact number other than 0. If the
+        uncertainty comes from a few samples, the deviation follows Student's t distribution. It is then
+        converted to the Gaussian deviation that has the same probability.
         """
         return _each(_deviation, 1)(self.value, self.error, self.freedom)
 
@@ -149,9 +142,8 @@ class Estimate:
 
 
 def concise(value: float, error: float) -> str:
-    """Format a number with its uncertainty in the last two digits, such as 1.242(20).
-
-    If the number has no uncertainty, it is written with six digits.
+    """Format a number with its uncertainty in the last two digits, such as 1.242(20). If the number has no
+    uncertainty, it is written with six digits.
     """
     if not (0.0 < error < math.inf and math.isfinite(value)):
         return f"{value:.6g}"
@@ -200,10 +192,8 @@ def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
 
 
 def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
-    """Extend a function of floats to arrays.
-
-    A single float is not converted to a numpy array, because the results of math and numpy differ in the last
-    bits.
+    """Extend a function of floats to arrays. A single float is not converted to a numpy array, because the
+    results of math and numpy differ in the last bits.
     """
 
     def of_any(*numbers: Number) -> Any:

@@ -31,10 +31,13 @@ def field(
 ) -> Observable:
     """Measure a property of the moving particles in equal cells along axes.
 
+    For the temperature, the local flow is computed in the same cells and, between sliding faces, also
+    resolved along the axis across them. If faces move along their normal, the flow is computed in layers of
+    each frame (see `gaspart.analysis.flow`). Errors are defined as in `profile`. If the run has stored
+    impulses, the density along one axis is also computed as in `profile`.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "velocity", "temperature"}, default "density"
         "density": number of particles divided by the volume of the cell. If faces move, only the part of the
         cell inside the container counts. "velocity": mean velocity. "temperature": twice the kinetic energy
@@ -44,10 +47,6 @@ def field(
     cells : int or sequence of int, default 20
         Number of cells along each of the `axes`. Along all other axes each cell extends over the whole
         container.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, identified by its number in the scene.
 
     Returns
     -------
@@ -60,13 +59,6 @@ def field(
     SceneError
         If the property or an axis is unknown, the file does not contain all particles, or there are too few
         frames.
-
-    Notes
-    -----
-    For the temperature, the local flow is computed in the same cells and, between sliding faces, also
-    resolved along the axis across them. If faces move along their normal, the flow is computed in layers of
-    each frame (see `gaspart.analysis.flow`). Errors are defined as in `profile`. If the run has stored
-    impulses, the density along one axis is also computed as in `profile`.
 
     Examples
     --------
@@ -140,18 +132,18 @@ def velocity_profile(
 ) -> Observable:
     """Measure the profile of the mean velocity of the moving particles along an axis.
 
+    All particles have equal weight in the mean, whatever their masses. For sheared gases and between sliding
+    walls the velocity is relative to the scene's frame of reference. Uncertainties are defined as in `field`.
+
+    Theory exists in four cases. For sheared images it is their linear flow. Between sliding plates it is free
+    molecular flow above a Knudsen number of 100, and a linear flow with slip below 0.1. For dilute spheres
+    that a force drives along plates it is a parabolic flow, also below 0.1. In equilibrium the velocity is
+    everywhere equal to the velocity of the centre of mass.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last one along which the flow varies, otherwise the last one.
-    species : int, optional
-        Measure only this species, identified by its number in the scene.
-    bins : int, default 40
-        Number of bins.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -164,25 +156,6 @@ def velocity_profile(
     SceneError
         If the axis is unknown, the species does not move, the file does not contain all particles, or there
         are too few frames.
-
-    Notes
-    -----
-    All particles have equal weight in the mean, whatever their masses. For sheared gases and between sliding
-    walls the velocity is relative to the scene's frame of reference. Uncertainties are defined as in `field`.
-
-    Theory exists in four cases. For sheared images it is their linear flow. Between sliding plates it is free
-    molecular flow above a Knudsen number of 100, and a linear flow with slip below 0.1. For dilute spheres
-    that a force drives along plates it is a parabolic flow, also below 0.1. In equilibrium the velocity is
-    everywhere equal to the velocity of the centre of mass.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.velocity_profile(simulation, axis="x", bins=4).estimate.shape
-    (2, 4)
     """
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined("velocity", run.scene, axis=axis, species=species)

@@ -29,17 +29,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gaspart.analysis.run_data import REST, RunData
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import Vibrating
-from gaspart.scene.shear import flow
-
-if TYPE_CHECKING:
-    from gaspart.analysis.run import Run
-
 
 # Present container: moving faces, and the areas and volumes between them.
 
@@ -54,11 +50,10 @@ _GOLDEN = 0.6180339887498949
 _NUMBERS = 2_000_000  # maximum number of values for all intervals together
 
 
-def sides(run: Run, times: np.ndarray) -> np.ndarray:
-    """Return the lower and upper ends (S, d, 2) of the container at the given times.
-
-    The ends are along each axis. The times (S,) lie within the run. A piston is assumed to move uniformly
-    between frames. Raises SceneError if the frames do not contain the position of the piston.
+def sides(run: RunData, times: np.ndarray) -> np.ndarray:
+    """Return the lower and upper ends (S, d, 2) of the container at the given times. The ends are along each
+    axis. The times (S,) lie within the run. A piston is assumed to move uniformly between frames. Raises
+    SceneError if the frames do not contain the position of the piston.
     """
     scene = run.scene
     ends = np.zeros((len(times), run.dimension, 2))
@@ -74,24 +69,21 @@ def sides(run: Run, times: np.ndarray) -> np.ndarray:
     return ends
 
 
-def accessible_lengths(run: Run, times: np.ndarray) -> np.ndarray:
-    """Return the side lengths (S, d) of the box that centres of moving particles can reach.
-
-    The times have the shape (S,). The radius of the largest moving particles determines the box.
+def accessible_lengths(run: RunData, times: np.ndarray) -> np.ndarray:
+    """Return the side lengths (S, d) of the box that centres of moving particles can reach. The times have
+    the shape (S,). The radius of the largest moving particles determines the box.
     """
     lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
     return np.diff(sides(run, times), axis=2)[:, :, 0] - margins
 
 
-def face_areas(run: Run) -> np.ndarray:
-    """Compute the area of each face by which a force or a flux is divided.
-
-    The shape is (T - 1, 2d). The area is that part of a face that particle centres can reach, averaged over
-    each interval between frames. For faces across the axis of a loaded piston it is the cross-section of the
-    container, because the load is defined with this area. The area is NaN if particles of several sizes can
-    reach different areas; then the run tallies the momentum per area. Scenes with moving faces contain no
-    fixed particles or interior walls.
+def face_areas(run: RunData) -> np.ndarray:
+    """Compute the area of each face by which a force or a flux is divided. The shape is (T - 1, 2d). The area
+    is that part of a face that particle centres can reach, averaged over each interval between frames. For
+    faces across the axis of a loaded piston it is the cross-section of the container, because the load is
+    defined with this area. The area is NaN if particles of several sizes can reach different areas; then the
+    run tallies the momentum per area. Scenes with moving faces contain no fixed particles or interior walls.
     """
     scene, intervals = run.scene, len(run.time) - 1
     if scene.has_unequal_areas:
@@ -108,11 +100,9 @@ def face_areas(run: Run) -> np.ndarray:
     return areas
 
 
-def _mean_areas(run: Run) -> np.ndarray:
-    """Compute the mean area (T - 1, 2d) of each face in each interval, without obstacles.
-
-    If a face moves, the mean is over evenly spread instants that are not in resonance with the oscillation of
-    the face.
+def _mean_areas(run: RunData) -> np.ndarray:
+    """Compute the mean area (T - 1, 2d) of each face in each interval, without obstacles. If a face moves,
+    the mean is over evenly spread instants that are not in resonance with the oscillation of the face.
     """
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
@@ -122,14 +112,13 @@ def _mean_areas(run: Run) -> np.ndarray:
     return areas.reshape(intervals, number, run.dimension).mean(axis=1).repeat(2, axis=1)
 
 
-def per_area(run: Run, amounts: np.ndarray, tallied: str) -> np.ndarray:
-    """Divide the amounts that each face receives per interval by the accessible area.
-
-    If particles of several sizes can reach different areas, the result is a sum over sizes. Each term is the
-    amount that particles of one size give, divided by the area that they can reach. The sum is read from the
-    tally with the name `tallied`. If `amounts` has no components, the normal component of the tally is used.
-    In this case the result is NaN for faces whose area changes with time. Raises SceneError if the file does
-    not contain the tally.
+def per_area(run: RunData, amounts: np.ndarray, tallied: str) -> np.ndarray:
+    """Divide the amounts that each face receives per interval by the accessible area. If particles of several
+    sizes can reach different areas, the result is a sum over sizes. Each term is the amount that particles of
+    one size give, divided by the area that they can reach. The sum is read from the tally with the name
+    `tallied`. If `amounts` has no components, the normal component of the tally is used. In this case the
+    result is NaN for faces whose area changes with time. Raises SceneError if the file does not contain the
+    tally.
     """
     areas = face_areas(run)
     fluxes = amounts / areas.reshape(*areas.shape, *[1] * (amounts.ndim - 2))
@@ -158,11 +147,10 @@ def _across(lengths: np.ndarray) -> np.ndarray:
     return np.stack([np.delete(lengths, axis, axis=-1).prod(axis=-1) for axis in axes], axis=-1)
 
 
-def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
-    """Compute the fraction (bins,) of each bin's volume that is accessible to particle centres.
-
-    The bins lie along `axis`. Fixed particles exclude the rest of the volume for the centres of particles
-    with this radius. The fraction is estimated from `_POINTS` evenly spread points.
+def accessible_fraction(run: RunData, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
+    """Compute the fraction (bins,) of each bin's volume that is accessible to particle centres. The bins lie
+    along `axis`. Fixed particles exclude the rest of the volume for the centres of particles with this
+    radius. The fraction is estimated from `_POINTS` evenly spread points.
     """
     container, fixed = run.scene.container, ~np.isfinite(run.masses)
     lengths, widths = np.array(container.lengths), np.diff(edges)
@@ -192,9 +180,8 @@ def accessible_fraction(run: Run, radius: float, axis: int, edges: np.ndarray) -
 
 @dataclass(frozen=True)
 class Grid:
-    """Equal cells between `lower` (A,) and `upper` (A,).
-
-    `numbers` (A,) are the numbers of cells along the axes.
+    """Equal cells between `lower` (A,) and `upper` (A,). `numbers` (A,) are the numbers of cells along the
+    axes.
     """
 
     lower: tuple[float, ...]
@@ -229,10 +216,9 @@ class Grid:
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
-        """Return the cell number of each position (..., A); -1 outside the grid and for NaN.
-
-        The upper end of the grid belongs to the last cell. If `inside` is True, all positions lie in the grid
-        apart from rounding. Positions outside the grid are then assigned to the nearest cell.
+        """Return the cell number of each position (..., A); -1 outside the grid and for NaN. The upper end of
+        the grid belongs to the last cell. If `inside` is True, all positions lie in the grid apart from
+        rounding. Positions outside the grid are then assigned to the nearest cell.
         """
         shape = np.shape(positions)[:-1]
         index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
@@ -283,20 +269,16 @@ class Grid:
         return totals if before is None or weights is not None else totals + before
 
 
-ABOUT = FLOW, REST = "flow", "rest"
-"""Frames of reference for motion: the local flow, or the container at rest."""
 _SAMPLES = 500  # minimum number of particles in frames per cell for an accurate steady flow
 _CELLS = 20  # default number of cells along an axis
 _CROWD = 8  # default number of particles per cell of a changing flow
-_BLOWS = 3.0  # equilibrium standard deviations above which a mean momentum counts as a wind
 
 
 @dataclass(frozen=True)
 class Peculiar:
-    """Velocities (T, M, d) of the M moving particles relative to the mean motion.
-
-    `freedom` is the number of degrees of freedom of each velocity component: 1 minus the fraction that
-    belongs to the mean motion. Its shape can be broadcast to (T, M, d).
+    """Velocities (T, M, d) of the M moving particles relative to the mean motion. `freedom` is the number of
+    degrees of freedom of each velocity component: 1 minus the fraction that belongs to the mean motion. Its
+    shape can be broadcast to (T, M, d).
     """
 
     velocities: np.ndarray
@@ -314,9 +296,8 @@ class Peculiar:
 
 
 def sum_squares(vectors: np.ndarray) -> np.ndarray:
-    """Sum the squares of the components of vectors (..., d).
-
-    The components are added one after another, because numpy sums over a short last axis slowly.
+    """Sum the squares of the components of vectors (..., d). The components are added one after another,
+    because numpy sums over a short last axis slowly.
     """
     total = vectors[..., 0] ** 2
     for k in range(1, vectors.shape[-1]):
@@ -324,19 +305,17 @@ def sum_squares(vectors: np.ndarray) -> np.ndarray:
     return np.asarray(total)
 
 
-def about_the_whole(run: Run) -> Peculiar:
-    """Compute velocities relative to the centre of mass in each frame.
-
-    The velocity of the centre of mass is subtracted only along the axes on which the total momentum is
-    conserved. For a sheared gas, the known flow is also subtracted.
+def about_the_whole(run: RunData) -> Peculiar:
+    """Compute velocities relative to the centre of mass in each frame. The velocity of the centre of mass is
+    subtracted only along the axes on which the total momentum is conserved. For a sheared gas, the known flow
+    is also subtracted.
     """
     return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
 
 
 def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray) -> Peculiar:
-    """Compute velocities relative to the centre of mass in each frame.
-
-    Velocities are (T, M, d), masses (M,). The mean is subtracted along the axes of the mask `axes` (d,).
+    """Compute velocities relative to the centre of mass in each frame. Velocities are (T, M, d), masses (M,).
+    The mean is subtracted along the axes of the mask `axes` (d,).
     """
     total = masses.sum() or 1.0  # no particles: nothing to subtract
     drift = np.einsum("tnd,n->td", velocities, masses) / total
@@ -348,7 +327,7 @@ def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray)
     return Peculiar(apart, np.where(axes, 1.0 - masses[:, None] / total, 1.0)[None])
 
 
-def _about_known(run: Run) -> np.ndarray:
+def _about_known(run: RunData) -> np.ndarray:
     """Return velocities (T, M, d) of moving particles, relative to the flow of a sheared gas."""
     velocities = _chosen(run.velocities, run.moving)
     if run.scene.shear_rate is None:
@@ -356,56 +335,20 @@ def _about_known(run: Run) -> np.ndarray:
     return velocities - flow(run.scene, _chosen(run.positions, run.moving))
 
 
-def flow_axes(run: Run) -> list[int]:
-    """Return the axes along which the flow velocity may vary.
-
-    The scene may define these axes (`Facts.flow_axes`). If it does not, but a wind exists, the axes along
-    which the wind may vary are returned. No axis is returned if the gas can only move as a whole.
-    """
-    scene = run.scene
-    return list(scene.flow_axes or (scene.resolved_axes() if wind(run).any() else ()))
-
-
-def wind(run: Run) -> np.ndarray:
-    """Find the periodic axes along which a wind (a mean velocity) exists, as a mask.
-
-    The mask has the shape (d,). A wind exists along an axis if the momentum along the axis is not conserved,
-    and if its mean over the run is more than three times the equilibrium scatter sqrt(M k_B T). If a weaker
-    wind is neglected, the temperature is too high by at most the fraction 9 / (d N). For a single particle no
-    wind is assumed, because its momentum has no scatter for comparison.
-    """
-    has_flow = np.zeros(run.dimension, dtype=bool)
-    masses = run.masses[run.moving]
-    axes = np.flatnonzero(run.periodic & ~run.conserved & (len(masses) > 1))
-    if not axes.size:
-        return has_flow
-    rows = []
-    for _, part in run.parts():
-        weighted = masses[:, None] * part.velocities[:, run.moving][..., axes]
-        momentum = weighted.sum(axis=1)
-        weighted **= 2
-        weighted /= masses[:, None]
-        rows.append([momentum, weighted.sum(axis=1) - momentum**2 / masses.sum()])
-    momenta, squares = np.concatenate(rows, axis=1).mean(axis=1)
-    has_flow[axes] = momenta**2 > _BLOWS**2 * np.maximum(squares / len(masses), 0.0) * masses.sum()
-    return has_flow
-
-
-def about_the_flow(run: Run) -> Peculiar:
+def about_the_flow(run: RunData) -> Peculiar:
     """Compute the velocities in all frames relative to the mean motion (see `mean_motion`)."""
     return mean_motion(run)(run)
 
 
 def mean_motion(
-    run: Run, along: Mapping[int, int] | None = None, local: bool = False
-) -> Callable[[Run], Peculiar]:
-    """Return a function that computes the velocities in frames relative to the mean motion.
-
-    If motion in the run is measured relative to rest, the function returns the velocities unchanged.
-    Otherwise, if the gas can flow, velocities are relative to the local mass-weighted flow in cells along
-    `flow_axes`. If the gas cannot flow, velocities are relative to the centre of mass. `along` maps an axis
-    to a number of cells that replaces the default. If the flow is steady, further axes in `along` are also
-    resolved. If `local` is True, velocities are always relative to the flow in these cells.
+    run: RunData, along: Mapping[int, int] | None = None, local: bool = False
+) -> Callable[[RunData], Peculiar]:
+    """Return a function that computes the velocities in frames relative to the mean motion. If motion in the
+    run is measured relative to rest, the function returns the velocities unchanged. Otherwise, if the gas can
+    flow, velocities are relative to the local mass-weighted flow in cells along `flow_axes`. If the gas
+    cannot flow, velocities are relative to the centre of mass. `along` maps an axis to a number of cells that
+    replaces the default. If the flow is steady, further axes in `along` are also resolved. If `local` is
+    True, velocities are always relative to the flow in these cells.
     """
     across, stated = run.flow_axes, dict(along or {})
     if not across and local:
@@ -420,13 +363,13 @@ def mean_motion(
     return partial(about_cells, cells=FlowCells(run, numbers) if changes else steady_cells(run, numbers))
 
 
-def _about_rest(run: Run) -> Peculiar:
+def _about_rest(run: RunData) -> Peculiar:
     """Return the velocities of the moving particles unchanged."""
     velocities = _chosen(run.velocities, run.moving)
     return Peculiar(velocities, np.ones((1, velocities.shape[1], 1)))
 
 
-def _number(run: Run, axes: list[int], changes: bool) -> int:
+def _number(run: RunData, axes: list[int], changes: bool) -> int:
     """Return the number of cells along each of the axes."""
     particles = int(run.moving.sum())
     samples = particles / _CROWD if changes else particles * len(run.time) / _SAMPLES
@@ -434,30 +377,27 @@ def _number(run: Run, axes: list[int], changes: bool) -> int:
 
 
 class FlowCells:
-    """Cells in which the flow velocity is computed.
-
-    `numbers` maps an axis to its number of cells. For a steady flow, the mass and momentum of the cells are
-    stored. Otherwise the flow changes with time. The flow velocity is then the mass-weighted mean in each
-    cell of each frame.
+    """Cells in which the flow velocity is computed. `numbers` maps an axis to its number of cells. For a
+    steady flow, the mass and momentum of the cells are stored. Otherwise the flow changes with time. The flow
+    velocity is then the mass-weighted mean in each cell of each frame.
     """
 
-    def __init__(self, run: Run, numbers: Mapping[int, int]) -> None:
+    def __init__(self, run: RunData, numbers: Mapping[int, int]) -> None:
         self._axes = list(numbers)
         lengths = np.array(run.scene.container.lengths)[self._axes]
         self.grid = Grid((0.0,) * len(self._axes), tuple(lengths.tolist()), tuple(numbers.values()))
         self.sums: list[np.ndarray] | None = None
 
-    def cells(self, part: Run) -> np.ndarray:
+    def cells(self, part: RunData) -> np.ndarray:
         """Return the cell number (T, M) of each moving particle."""
         return self.grid.cells(_chosen(part.positions, part.moving)[..., self._axes], inside=True)
 
     def sum(
         self, cells: np.ndarray, masses: np.ndarray, velocities: np.ndarray, before: list | None
     ) -> list[np.ndarray]:
-        """Sum mass and momentum in cells.
-
-        If the flow changes with time, there are sums for each frame, shape (T, C). Otherwise there is one sum
-        over the frames, shape (C,), which is added to the sums of earlier frames.
+        """Sum mass and momentum in cells. If the flow changes with time, there are sums for each frame, shape
+        (T, C). Otherwise there is one sum over the frames, shape (C,), which is added to the sums of earlier
+        frames.
         """
         blocks = np.arange(len(cells)) if before is None else None
         weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]
@@ -465,7 +405,7 @@ class FlowCells:
         return [self.grid.sums(cells, each, blocks, total) for each, total in zip(weights, sums, strict=True)]
 
 
-def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
+def steady_cells(run: RunData, numbers: Mapping[int, int]) -> FlowCells:
     """Return the cells of a steady flow with the mass and momentum summed over all frames."""
     flow_cells = FlowCells(run, numbers)
     sums = [np.zeros(flow_cells.grid.numbers) for _ in range(1 + run.dimension)]
@@ -475,7 +415,7 @@ def steady_cells(run: Run, numbers: Mapping[int, int]) -> FlowCells:
     return flow_cells
 
 
-def about_cells(run: Run, cells: FlowCells) -> Peculiar:
+def about_cells(run: RunData, cells: FlowCells) -> Peculiar:
     """Compute velocities relative to the mass-weighted mean velocity in the cells."""
     numbers, velocities, masses = cells.cells(run), _about_known(run), run.masses[run.moving]
     sums, groups = cells.sums, numbers

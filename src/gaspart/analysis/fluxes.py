@@ -17,8 +17,9 @@ from gaspart.analysis.profiles import Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
 from gaspart.analysis.statistics import correlated_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Open
+from gaspart.scene.faces import Open
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.trajectory.amber import face_names
 
 _BLOCKS = 4096
@@ -27,12 +28,16 @@ _BLOCKS = 4096
 def heat_flux(source: Source, start: float | None = None) -> Observable:
     """Measure the heat flux into each face that has a temperature.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    The heat is the energy that particles lose in the rest frame of the wall. For a sliding wall, the heat is
+    the energy that the wall receives plus the work that the wall does on the gas. The result is the mean flux
+    of the steady state. The energy of the gas and the first moment of this energy across the walls are
+    bounded. The contributions of their changes are subtracted (`_mean_without_stores`).
+
+    The theoretical flux is 0 in equilibrium. Between two plates it is the flux of free molecular flow above a
+    Knudsen number of 100. Below 0.1 it follows from Fourier's law with Enskog's conductivity and temperature
+    jumps. Between these limits it is an interpolation with an accuracy of 8 % (`heat.interpolated_flux`).
+    Between sliding plates it is half of the power of the stress. With partial accommodation, theory exists
+    only for free molecular flow.
 
     Returns
     -------
@@ -44,19 +49,6 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If no face has a temperature, if there are too few frames, or if no particle hit these faces.
-
-    Notes
-    -----
-    The heat is the energy that particles lose in the rest frame of the wall. For a sliding wall, the heat is
-    the energy that the wall receives plus the work that the wall does on the gas. The result is the mean flux
-    of the steady state. The energy of the gas and the first moment of this energy across the walls are
-    bounded. The contributions of their changes are subtracted (`_mean_without_stores`).
-
-    The theoretical flux is 0 in equilibrium. Between two plates it is the flux of free molecular flow above a
-    Knudsen number of 100. Below 0.1 it follows from Fourier's law with Enskog's conductivity and temperature
-    jumps. Between these limits it is an interpolation with an accuracy of 8 %
-    (`gaspart.theory.interpolated_flux`). Between sliding plates it is half of the power of the stress. With
-    partial accommodation, theory exists only for free molecular flow.
 
     Examples
     --------
@@ -87,12 +79,15 @@ def heat_flux(source: Source, start: float | None = None) -> Observable:
 def wall_shear(source: Source, start: float | None = None) -> Observable:
     """Measure the shear stress on each face that changes tangential velocities.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    Only some engines tally the tangential momentum. They tally it for faces that slide and for faces along
+    which a force drives the gas. As in `heat_flux`, the result is the mean of the steady state. The
+    contribution of the change of the gas momentum is subtracted.
+
+    If a force drives a gas along two identical faces, the theoretical force on each face is exactly half of
+    the force on the gas. Between sliding plates above a Knudsen number of 100, the theoretical stress is
+    computed for free molecular flow. Below 0.1 it follows from Enskog's viscosity with slip. Between these
+    limits it is an interpolation with an accuracy of 8 % (`shear.interpolated_stress`). With partial
+    accommodation, theory exists only for free molecular flow.
 
     Returns
     -------
@@ -104,29 +99,6 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If no face exerts a tangential force, if there are too few frames, or if no particle hit these faces.
-
-    Notes
-    -----
-    Only some engines tally the tangential momentum. They tally it for faces that slide and for faces along
-    which a force drives the gas. As in `heat_flux`, the result is the mean of the steady state. The
-    contribution of the change of the gas momentum is subtracted.
-
-    If a force drives a gas along two identical faces, the theoretical force on each face is exactly half of
-    the force on the gas. Between sliding plates above a Knudsen number of 100, the theoretical stress is
-    computed for free molecular flow. Below 0.1 it follows from Enskog's viscosity with slip. Between these
-    limits it is an interpolation with an accuracy of 8 % (`gaspart.theory.interpolated_stress`). With partial
-    accommodation, theory exists only for free molecular flow.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> faces = {"x_low": gp.Thermal(1.0), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.0))}
-    >>> box = gp.Container((9.0, 9.0), boundary=("wall", "periodic"))
-    >>> scene = gp.Scene(box, [gp.Species(20, 0.2, temperature=1.0)], faces=faces)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.wall_shear(simulation).estimate.dims
-    ('face', 'component')
     """
     with open_run(source, start) as run:
         require_defined("wall_shear", run.scene)
@@ -148,10 +120,8 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
 
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
-    """Return the amount that each face receives per interval and accessible area.
-
-    The shape is (T - 1, 2d, ...). See `per_area`. Raises SceneError if the frames do not contain the sum
-    `name`.
+    """Return the amount that each face receives per interval and accessible area. The shape is (T - 1, 2d,
+    ...). See `per_area`. Raises SceneError if the frames do not contain the sum `name`.
     """
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
@@ -184,12 +154,11 @@ def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.nd
 
 
 def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estimate:
-    """Compute the mean of rates (K,) in blocks, corrected for changes of bounded sums.
-
-    The blocks are consecutive. An amount that the gas stores in one block is later returned, so stored
-    amounts do not change the long-time mean. The contribution of the changes (K,) of the bounded sums is
-    removed by least squares. Blocks may be shorter than the correlation time. In free flight, the correlation
-    time is the flight time from wall to wall. Therefore the error is computed as for a correlated series.
+    """Compute the mean of rates (K,) in blocks, corrected for changes of bounded sums. The blocks are
+    consecutive. An amount that the gas stores in one block is later returned, so stored amounts do not change
+    the long-time mean. The contribution of the changes (K,) of the bounded sums is removed by least squares.
+    Blocks may be shorter than the correlation time. In free flight, the correlation time is the flight time
+    from wall to wall. Therefore the error is computed as for a correlated series.
     """
     used = [change / np.abs(change).max() for change in changes if change.any()]
     design = np.stack([np.ones(len(rates)), *used], axis=1)
@@ -198,10 +167,9 @@ def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estima
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments.
-
-    Each result is an array (T,). Only translational energy counts. The moments are taken along the normals of
-    the faces. The result is empty if the file does not contain all particles.
+    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments. Each
+    result is an array (T,). Only translational energy counts. The moments are taken along the normals of the
+    faces. The result is empty if the file does not contain all particles.
     """
     if run.is_subset:
         return []
@@ -210,10 +178,9 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """Compute the momentum relative to the mean velocity of the faces, and its first moments.
-
-    Each result is an array (T,). The momentum is the component along `axis`. The moments are taken along the
-    normals of the faces.
+    """Compute the momentum relative to the mean velocity of the faces, and its first moments. Each result is
+    an array (T,). The momentum is the component along `axis`. The moments are taken along the normals of the
+    faces.
     """
     if run.is_subset:
         return []
@@ -222,9 +189,8 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 
 
 def _about_faces(run: Run) -> np.ndarray:
-    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces.
-
-    These relative velocities do not depend on the frame of reference.
+    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces. These relative
+    velocities do not depend on the frame of reference.
     """
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
@@ -233,10 +199,9 @@ def _about_faces(run: Run) -> np.ndarray:
 
 
 def _with_moments(run: Run, carried: Callable[[Run], np.ndarray]) -> list[np.ndarray]:
-    """Sum an amount that particles carry, and its first moments across the thermal faces.
-
-    `carried` returns the amounts (T, M) in a part of the run; each sum has the shape (T,). For the moments,
-    positions are relative to the middle of the container.
+    """Sum an amount that particles carry, and its first moments across the thermal faces. `carried` returns
+    the amounts (T, M) in a part of the run; each sum has the shape (T,). For the moments, positions are
+    relative to the middle of the container.
     """
     across = sorted({number // 2 for number in run.scene.thermal_numbers})
     sums = []
@@ -260,16 +225,21 @@ def particle_flux(
 ) -> Observable:
     """Measure the net number of particles per time that cross a plane across an axis.
 
+    The flux is computed from the change of the number of particles beyond the plane. So it is exact, however
+    often particles cross the plane between frames. Particles that cross and return do not count. Particles
+    that enter or leave through an open face beyond the plane do not count either. The plane crosses the whole
+    container. If interior walls lie in the plane, all particles pass through their openings.
+
+    Without interior walls, the theoretical flux is 0 in a steady state. For openings between interior walls
+    in the plane, theory exists in free molecular flow. The flux through the openings in each direction is n
+    sqrt(k_B T / 2 pi m) times their area, where n is the density on the side from which the particles come.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     axis : {"x", "y", "z"}, optional
         The axis. Default: the last axis with open faces, otherwise the last axis with walls.
     at : float, [length], optional
         Position of the plane along the axis. Default: the middle of the container.
-    species : int, optional
-        Measure only this species, identified by its number in the scene.
     start : float, [time], optional
         Frames before this time are discarded; use 0 for a gas that flows out from the start. Default: a
         quarter of the run.
@@ -286,17 +256,6 @@ def particle_flux(
         If the axis is periodic, because images of particles then cross the plane; if faces across another
         axis are open; if the plane is outside the container; if the file does not contain all particles; or
         if there are too few frames.
-
-    Notes
-    -----
-    The flux is computed from the change of the number of particles beyond the plane. So it is exact, however
-    often particles cross the plane between frames. Particles that cross and return do not count. Particles
-    that enter or leave through an open face beyond the plane do not count either. The plane crosses the whole
-    container. If interior walls lie in the plane, all particles pass through their openings.
-
-    Without interior walls, the theoretical flux is 0 in a steady state. For openings between interior walls
-    in the plane, theory exists in free molecular flow. The flux through the openings in each direction is n
-    sqrt(k_B T / 2 pi m) times their area, where n is the density on the side from which the particles come.
 
     Examples
     --------
@@ -324,9 +283,8 @@ def particle_flux(
 
 
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
-    """Return the net number (T,) of particles that have entered through the upper face.
-
-    The number is 0 if this face is not open.
+    """Return the net number (T,) of particles that have entered through the upper face. The number is 0 if
+    this face is not open.
     """
     upper = 2 * axis + 1
     if not isinstance(run.scene.faces.get(FACES[upper]), Open):
@@ -338,9 +296,8 @@ def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
 
 
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Return the number of particles in the container in each frame.
-
-    This number is the initial number plus the particles that have entered minus the particles that have left.
+    """Return the number of particles in the container in each frame. This number is the initial number plus
+    the particles that have entered minus the particles that have left.
     """
     opened = [number for number, _ in scene.faces_of(Open)]
     moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)
@@ -350,12 +307,8 @@ def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
 def particle_number(source: Source, start: float | None = None) -> Observable:
     """Measure the mean number of particles inside a container with open faces.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    Without collisions, correlations decay as slowly as 1/t. Therefore the error is computed by
+    `gaspart.analysis.statistics.slow_mean`.
 
     Returns
     -------
@@ -366,23 +319,6 @@ def particle_number(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If the scene has no open faces, or there are too few frames.
-
-    Notes
-    -----
-    Without collisions, correlations decay as slowly as 1/t. Therefore the error is computed by
-    `gaspart.analysis.statistics.slow_mean`.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> gas, reservoir = gp.Species(20, 0.5, temperature=1.0), gp.Open(activity=0.1, temperature=1.0)
-    >>> scene = gp.Scene(
-    ...     gp.Container((16.0, 16.0)), [gas], centres_to_walls=True, faces={"x_low": reservoir}
-    ... )
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(20.0)
-    >>> gp.analysis.particle_number(simulation).estimate.attrs["units"]
-    '1'
     """
     with open_run(source, start, varying=True) as run:
         require_defined("number", run.scene)

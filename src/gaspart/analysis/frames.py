@@ -32,10 +32,7 @@ def measure_single(
 
 @contextmanager
 def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
-    """Return the frames of a source up to the time `end`.
-
-    Without an end time, the source itself is returned.
-
+    """Return the frames of a source up to the time `end`. Without an end time, the source itself is returned.
     If `pairs` is True, the frames of a simulation include the numbers of collisions of each pair of species.
     Raises SceneError for fewer than two frames.
     """

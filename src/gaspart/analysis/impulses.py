@@ -22,7 +22,6 @@ from gaspart.analysis.profiles import BLOCKS, LEAST_FRAMES, Cells, Means, ratio
 from gaspart.analysis.run import Run
 from gaspart.engines import ENGINES, Engine
 from gaspart.errors import SceneError
-from gaspart.scene.features import shares_energy_evenly
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import ImpulseTally
@@ -32,9 +31,8 @@ from gaspart.trajectory.run_options import stored_tally
 
 
 def engine_class(run: Run) -> type[Engine]:
-    """Return the class of the engine of a run.
-
-    If the file does not name the engine, return the base class, which declares no capabilities.
+    """Return the class of the engine of a run. If the file does not name the engine, return the base class,
+    which declares no capabilities.
     """
     return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
@@ -45,23 +43,20 @@ def engine_tallies(run: Run) -> frozenset[str]:
 
 
 def knows_energies(engine: Engine | type[Engine], scene: Scene) -> bool:
-    """Return True if the mean kinetic energy along each axis is known exactly.
-
-    This requires an engine without a systematic error, and a scene in which the energy is equally distributed
-    among the axes. An engine with time steps has such an error near a wall, because particles cross the wall
-    within a step.
+    """Return True if the mean kinetic energy along each axis is known exactly. This requires an engine
+    without a systematic error, and a scene in which the energy is equally distributed among the axes. An
+    engine with time steps has such an error near a wall, because particles cross the wall within a step.
     """
-    return engine.reference and shares_energy_evenly(scene)
+    return engine.reference and scene.shares_energy_evenly
 
 
 def estimator(
     run: Run, usual: str, better: str, used: bool, tally: OptionalTally | None, lacks: str = ""
 ) -> dict[str, str]:
-    """Return the attributes that name the data from which an observable was estimated.
-
-    The attribute `estimator` is the text `better` if `used` is True, otherwise `usual`. If the usual
-    estimator was used, but the scene and the engine allow a run to store `tally`, a note recommends the
-    option. If `lacks` is not empty, the note instead states which data the stored tally does not contain.
+    """Return the attributes that name the data from which an observable was estimated. The attribute
+    `estimator` is the text `better` if `used` is True, otherwise `usual`. If the usual estimator was used,
+    but the scene and the engine allow a run to store `tally`, a note recommends the option. If `lacks` is not
+    empty, the note instead states which data the stored tally does not contain.
     """
     if used:
         return {"estimator": better}
@@ -116,9 +111,8 @@ class MomentumFlux:
     walled: bool
 
     def numbers(self) -> np.ndarray:
-        """Compute the number of particles in each bin integrated over time, shape (M, bins).
-
-        In each interval, the sum over the bins is exact: the total number of particles times the duration.
+        """Compute the number of particles in each bin integrated over time, shape (M, bins). In each
+        interval, the sum over the bins is exact: the total number of particles times the duration.
         """
         if self.pull > 0.0:  # start at the lower side, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
@@ -147,10 +141,9 @@ class MomentumFlux:
         return content + (total - content.sum(axis=1))[:, None] * shares
 
     def _fallen(self) -> np.ndarray:
-        """Compute the numbers of particles under gravity, which changes the momentum of particles.
-
-        Gravity gives momentum to all particles below a plane. For the planes of a bin, these are all
-        particles in lower bins and, on average, a fraction of the particles in the bin itself.
+        """Compute the numbers of particles under gravity, which changes the momentum of particles. Gravity
+        gives momentum to all particles below a plane. For the planes of a bin, these are all particles in
+        lower bins and, on average, a fraction of the particles in the bin itself.
         """
         numbers, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
@@ -187,10 +180,8 @@ def read_impulses(data: xr.Dataset) -> ImpulseTally | None:
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
-    """Compute the number of moving particles in each bin, integrated over each interval.
-
-    The intervals lie between frames; the shape is (T - 1, bins). Return None if the run has not stored the
-    required data.
+    """Compute the number of moving particles in each bin, integrated over each interval. The intervals lie
+    between frames; the shape is (T - 1, bins). Return None if the run has not stored the required data.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
@@ -204,10 +195,8 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
 
 def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
-    """Return the momentum flux from row `row` of the tally.
-
-    Return None if particles of different masses contribute to the row, or if the file does not contain the
-    particles that determine the temperature.
+    """Return the momentum flux from row `row` of the tally. Return None if particles of different masses
+    contribute to the row, or if the file does not contain the particles that determine the temperature.
     """
     members = run.species == row
     masses = run.masses[members]
@@ -241,13 +230,11 @@ def _has_potential(run: Run) -> bool:
 
 
 def _spread(run: Run, axis: int, bins: int, members: np.ndarray, cells: Cells) -> np.ndarray:
-    """Compute <m v^2> along an axis for a particle in each bin, shape (bins,).
-
-    All particles in the mask `members` (N,) have the same mass. If faces have a temperature, this temperature
-    determines the result. Otherwise the energy of the gas is constant, and the kinetic energy is the total
-    energy minus the potential energy. The temperature at a position is then the mean over the states that
-    have a particle at this position. If the momentum is conserved, the result is corrected for the motion of
-    the centre of mass.
+    """Compute <m v^2> along an axis for a particle in each bin, shape (bins,). All particles in the mask
+    `members` (N,) have the same mass. If faces have a temperature, this temperature determines the result.
+    Otherwise the energy of the gas is constant, and the kinetic energy is the total energy minus the
+    potential energy. The temperature at a position is then the mean over the states that have a particle at
+    this position. If the momentum is conserved, the result is corrected for the motion of the centre of mass.
     """
     hot = run.scene.face_temperatures
     spread = np.full(bins, min(hot) if hot else run.temperature)
@@ -263,9 +250,8 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray, cells: Cells) -
 
 
 def _above(run: Run, axis: int, cells: Cells) -> np.ndarray:
-    """Compute the mean distance from a particle to the upper end of its bin, shape (bins,).
-
-    The distance is divided by the bin width. It is set to one half if no particle was in the bin.
+    """Compute the mean distance from a particle to the upper end of its bin, shape (bins,). The distance is
+    divided by the bin width. It is set to one half if no particle was in the bin.
     """
     scale = cells.numbers[0] / run.scene.container.lengths[axis]
     return _mean_in(
@@ -282,11 +268,10 @@ def _mean_in(cells: Cells, of: Callable[[Run, np.ndarray], np.ndarray], default:
 
 
 def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (K, bins) of the impulse estimate in the weighted mean with counts.
-
-    `counted` and `impulses` are the estimates in blocks (K, bins). The weights for each half of the blocks
-    are computed from the other half. The weights are between 0 and 1. If `periodic` is True, the first bin is
-    a neighbour of the last one.
+    """Compute the weights (K, bins) of the impulse estimate in the weighted mean with counts. `counted` and
+    `impulses` are the estimates in blocks (K, bins). The weights for each half of the blocks are computed
+    from the other half. The weights are between 0 and 1. If `periodic` is True, the first bin is a neighbour
+    of the last one.
     """
     half = len(counted) // 2
     first = _weights(counted[:half], impulses[:half], periodic)
@@ -296,7 +281,6 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
 
 def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
     """Compute the weights (bins,) that minimize the variance of the weighted mean over the blocks.
-
     Neighbouring bins have a common weight.
     """
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
@@ -318,9 +302,8 @@ def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
-    """Compute the density along an axis from counts and impulses, for all particles or one species.
-
-    Return None if the run has not stored the required impulses.
+    """Compute the density along an axis from counts and impulses, for all particles or one species. Return
+    None if the run has not stored the required impulses.
     """
     frames = len(run.time)
     if run.is_subset and len(run.scene.kinds) > 1:
@@ -351,19 +334,16 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 
 
 def default_bins(run: Run, axis: int, of: str) -> int:
-    """Return the default number of bins along an axis.
-
-    For a density, the default is the number of bins of the stored impulses.
+    """Return the default number of bins along an axis. For a density, the default is the number of bins of
+    the stored impulses.
     """
     has = read_impulses(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
 def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
-    """Return the attributes that name the data from which a density was estimated.
-
-    The attributes are defined by `estimator`. If the bins of the stored impulses cannot be used, a note says
-    so.
+    """Return the attributes that name the data from which a density was estimated. The attributes are defined
+    by `estimator`. If the bins of the stored impulses cannot be used, a note says so.
     """
     has, tallies = read_impulses(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
@@ -401,11 +381,10 @@ values were within two standard errors.
 
 
 def wall_controls(run: Run, axis: int) -> np.ndarray | None:
-    """Compute control variates (T - 1, 3) of the impulses across an axis, per time.
-
-    The control variates are the deviation of sum m v^2 along the axis from its known mean, and the changes of
-    the momentum and of sum m x v along the axis. Return None unless the run has stored impulses along this
-    axis and the states of all particles, and is in equilibrium at a constant kinetic energy.
+    """Compute control variates (T - 1, 3) of the impulses across an axis, per time. The control variates are
+    the deviation of sum m v^2 along the axis from its known mean, and the changes of the momentum and of sum
+    m x v along the axis. Return None unless the run has stored impulses along this axis and the states of all
+    particles, and is in equilibrium at a constant kinetic energy.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or not run.has_states:
@@ -420,10 +399,9 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 
 
 def stores(run: Run) -> np.ndarray:
-    """Compute the momentum and the sum of m x v along each axis, for moving particles.
-
-    The shape is (d, T, 2), with one value for each frame. The position x is measured from the middle of the
-    container. The shape is (d, T, 0) if the file does not contain all particles.
+    """Compute the momentum and the sum of m x v along each axis, for moving particles. The shape is (d, T,
+    2), with one value for each frame. The position x is measured from the middle of the container. The shape
+    is (d, T, 0) if the file does not contain all particles.
     """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
@@ -437,9 +415,8 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """Return the number of groups of intervals for a regression.
-
-    The number is 0 if there are too few intervals or particles.
+    """Return the number of groups of intervals for a regression. The number is 0 if there are too few
+    intervals or particles.
     """
     if run.moving.sum() < FEWEST:
         return 0
@@ -449,11 +426,10 @@ def group_count(run: Run) -> int:
 
 
 def subtract_controls(series: np.ndarray, controls: np.ndarray, groups: int) -> np.ndarray:
-    """Subtract from a series (K,) the part that is correlated with control variates (K, R).
-
-    The control variates have a mean of 0. The coefficients for each half of the series come from a regression
-    on the other half, in `groups` / 2 groups of consecutive values. So the coefficients are independent of
-    the noise that they multiply, and the mean of the result is unbiased.
+    """Subtract from a series (K,) the part that is correlated with control variates (K, R). The control
+    variates have a mean of 0. The coefficients for each half of the series come from a regression on the
+    other half, in `groups` / 2 groups of consecutive values. So the coefficients are independent of the noise
+    that they multiply, and the mean of the result is unbiased.
     """
     half, residual = len(series) // 2, series.copy()
     first, second = slice(None, half), slice(half, None)

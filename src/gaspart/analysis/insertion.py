@@ -64,10 +64,9 @@ class Insertions:
 
     @property
     def resolution(self) -> float:
-        """Probability that corresponds to a single free position in all trials.
-
-        The trials are equivalent to a larger number of random positions in the whole container. The
-        probability is 1 divided by this number.
+        """Probability that corresponds to a single free position in all trials. The trials are equivalent to
+        a larger number of random positions in the whole container. The probability is 1 divided by this
+        number.
         """
         return float(self.share.mean() / (self.trials * len(self.share)))
 
@@ -98,10 +97,9 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """Count the free positions among trials in the region that no single particle covers.
-
-    Returns the volume of this region as a fraction of the container, and the count. `groups` contains
-    positions of particles, each array with its contact distance.
+    """Count the free positions among trials in the region that no single particle covers. Returns the volume
+    of this region as a fraction of the container, and the count. `groups` contains positions of particles,
+    each array with its contact distance.
     """
     from scipy.spatial import cKDTree
 
@@ -116,9 +114,8 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
-    """Mark the positions (M, d) that are far enough from all particles.
-
-    The distance from each particle must exceed the contact distance minus `less`.
+    """Mark the positions (M, d) that are far enough from all particles. The distance from each particle must
+    exceed the contact distance minus `less`.
     """
     is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
@@ -153,11 +150,10 @@ def _remaining(
 def _find_covered_cells(
     groups: list[tuple[np.ndarray, float]], sides: np.ndarray, number: np.ndarray
 ) -> np.ndarray:
-    """Find the grid cells (cells,) that lie completely within the contact distance of one particle.
-
-    The grid has the shape (*number). Cells that differ only in their index along the last axis form a strip.
-    In each nearby strip, a particle covers an interval of cells. The number 1 is added at the first cell of
-    the interval and subtracted after its last cell. The cumulative sum along the strip is then the number of
+    """Find the grid cells (cells,) that lie completely within the contact distance of one particle. The grid
+    has the shape (*number). Cells that differ only in their index along the last axis form a strip. In each
+    nearby strip, a particle covers an interval of cells. The number 1 is added at the first cell of the
+    interval and subtracted after its last cell. The cumulative sum along the strip is then the number of
     particles that cover each cell. Intervals continue periodically from the last to the first cell.
     """
     last, strips = int(number[-1]), int(np.prod(number[:-1]))
@@ -186,15 +182,18 @@ def _find_covered_cells(
 def chemical_potential(source: Source, trials: int = TRIALS, start: float | None = None) -> Observable:
     """Measure the excess chemical potential of a periodic fluid, divided by k_B T, by insertion.
 
+    The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
+    deviation s between frames. Frames about s standard deviations above the median contribute most to the
+    mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
+    median. If sqrt(2 ln n) is less than s + 1.5, the frames that contribute most are missing. Then the result
+    is too large, its error is NaN, and a note says so. The theoretical value follows from the equation of
+    state, for the same number of particles.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     trials : int, default 512
         Number of random positions that are tried in each of up to 2048 frames. The positions lie in the
         region where a particle may fit.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -209,25 +208,6 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
     SceneError
         If the scene is not a periodic container of smooth elastic particles, or is a mixture with single
         particles or a polydisperse species; if there are too few frames; or if no position was free.
-
-    Notes
-    -----
-    The error refers to the mean over frames, to first order. In a dense fluid ln P has a large standard
-    deviation s between frames. Frames about s standard deviations above the median contribute most to the
-    mean of P. Among n independent frames, the best frame is about sqrt(2 ln n) standard deviations above the
-    median. If sqrt(2 ln n) is less than s + 1.5, the frames that contribute most are missing. Then the result
-    is too large, its error is NaN, and a note says so. The theoretical value follows from the equation of
-    state, for the same number of particles.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.chemical_potential(simulation, trials=50).estimate.attrs["units"]
-    '1'
     """
     trials = count_of("trials", trials, least=1)
     with open_run(source, start) as run:
@@ -256,9 +236,8 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """Return the contact distances of an inserted particle of each species.
-
-    For equal particles the result has a single element.
+    """Return the contact distances of an inserted particle of each species. For equal particles the result
+    has a single element.
     """
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:

@@ -27,10 +27,9 @@ fastest growth.
 
 
 class Deviation:
-    """Infinitesimal deviation of a state.
-
-    The deviations of positions and of velocities are lists of N vectors. The object also stores a time for
-    each particle, because a particle is advanced only at its own events.
+    """Infinitesimal deviation of a state. The deviations of positions and of velocities are lists of N
+    vectors. The object also stores a time for each particle, because a particle is advanced only at its own
+    events.
     """
 
     def __init__(self, positions: np.ndarray, velocities: np.ndarray, time: float) -> None:
@@ -50,13 +49,12 @@ class Deviation:
         self.velocities[n][axis] = -self.velocities[n][axis]
 
     def collide(self, i: int, j: int, away: list[float], parting: list[float], share: float) -> None:
-        """Map the deviations of particles i and j at a smooth elastic contact.
-
-        Both deviations must be advanced to the time of the contact. The arguments are `away` = x_i - x_j,
-        `parting` = v_i - v_j just after the contact, and `share` = m_j / (m_i + m_j). With n = away / sigma
-        and the relative velocity g before the contact, a relative deviation (r, u) becomes r - 2 (r.n) n and
-        u - 2 (u.n) n - 2 (g.m) n - 2 (g.n) m. Here m = (r
-        + g t) / sigma is the deviation of n, and t = -(r.n) / (g.n) the deviation of the time of contact.
+        """Map the deviations of particles i and j at a smooth elastic contact. Both deviations must be
+        advanced to the time of the contact. The arguments are `away` = x_i - x_j, `parting` = v_i - v_j just
+        after the contact, and `share` = m_j / (m_i + m_j). With n = away / sigma and the relative velocity g
+        before the contact, a relative deviation (r, u) becomes r - 2 (r.n) n and u - 2 (u.n) n - 2 (g.m) n -
+        2 (g.n) m. Here m = (r + g t) / sigma is the deviation of n, and t = -(r.n) / (g.n) the deviation of
+        the time of contact.
         """
         axes = range(len(away))
         sigma = math.sqrt(sum([x * x for x in away]))
@@ -106,6 +104,9 @@ def follow(deviation: Deviation, scene: Scene, masses: np.ndarray, events: Mappi
 def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: int = 0) -> Observable:
     """Measure the largest Lyapunov exponent from the recorded events of an event-driven run.
 
+    The growth rates in equal intervals form a correlated series. The uncertainty is the error of the mean of
+    this series. The computation takes about 10 microseconds per event.
+
     Parameters
     ----------
     simulation : Simulation
@@ -126,11 +127,6 @@ def lyapunov_exponent(simulation: Simulation, start: float | None = None, seed: 
     SceneError
         If there is no record, if it has too few events, or if the scene has anything other than moving
         particles with smooth elastic contacts and hard faces.
-
-    Notes
-    -----
-    The growth rates in equal intervals form a correlated series. The uncertainty is the error of the mean of
-    this series. The computation takes about 10 microseconds per event.
 
     Examples
     --------

@@ -16,11 +16,11 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.observable import Observable, observable, with_freedom
 from gaspart.analysis.observables import require_defined
 from gaspart.analysis.paths import Groups, groups_of
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import means_of
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of
@@ -50,10 +50,9 @@ directly. Fourier transforms would lose at least 4 of 16 digits.
 
 @dataclass(frozen=True)
 class Curves:
-    """Time correlations of one replica at L lags, in reduced units; each has the shape (L,).
-
-    `time`, lags. `msd`, <|r(t) - r(0)|^2>. `correlation`, <v(0).v(t)> / d. `running`, derivative of msd
-    divided by 2d, from <(r(t) - r(0)).(v(t) + v(0))> / 2d, which is exact at every lag.
+    """Time correlations of one replica at L lags, in reduced units; each has the shape (L,). `time`, lags.
+    `msd`, <|r(t) - r(0)|^2>. `correlation`, <v(0).v(t)> / d. `running`, derivative of msd divided by 2d, from
+    <(r(t) - r(0)).(v(t) + v(0))> / 2d, which is exact at every lag.
     """
 
     time: np.ndarray
@@ -63,10 +62,9 @@ class Curves:
 
 
 def correlate(displacements: np.ndarray, velocities: np.ndarray, interval: float, lags: int) -> Curves:
-    """Compute correlations, averaged over particles and all time origins.
-
-    The lags are 0 ... `lags` - 1 times `interval`. `displacements` and `velocities` have the shape (T, N, d)
-    and are sampled at equal intervals. Raises ValueError for more lags than frames.
+    """Compute correlations, averaged over particles and all time origins. The lags are 0 ... `lags` - 1 times
+    `interval`. `displacements` and `velocities` have the shape (T, N, d) and are sampled at equal intervals.
+    Raises ValueError for more lags than frames.
     """
     frames, count, dimension = displacements.shape
     if not 1 <= lags <= frames:
@@ -112,10 +110,9 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Compute sums of products of series values that are separated by a time difference t.
-
-    The products are a(s + t) a(s) or a(s + t) b(s). They are summed over the columns (T, C) and over the
-    times s, for t = 0, 1 ... T - 1. The sums for negative t are at the end of the result.
+    """Compute sums of products of series values that are separated by a time difference t. The products are
+    a(s + t) a(s) or a(s + t) b(s). They are summed over the columns (T, C) and over the times s, for t = 0, 1
+    ... T - 1. The sums for negative t are at the end of the result.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
@@ -141,10 +138,9 @@ _PART = 4.0
 
 
 def average_correlations(trajectory: xr.Dataset) -> Curves:
-    """Return the averages of the stored correlations of a run up to its last frame.
-
-    Lags are in the time unit of the scene. Velocities are not relative to the centre of mass. `msd` and
-    `running` are NaN if the run has not stored displacements.
+    """Return the averages of the stored correlations of a run up to its last frame. Lags are in the time unit
+    of the scene. Velocities are not relative to the centre of mass. `msd` and `running` are NaN if the run
+    has not stored displacements.
     """
     last, dimension = trajectory.isel(frame=-1), trajectory.sizes["spatial"]
     lags = trajectory.sizes["lag"]
@@ -156,17 +152,13 @@ def average_correlations(trajectory: xr.Dataset) -> Curves:
 
 
 def accumulated_mean(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Compute the mean of a correlation sum in `SUMS` and its error, by lag.
-
-    Returns four arrays of shape (lags,): the lags, the mean, its standard error, and the degrees of freedom
-    of the error.
-
-    The mean is over all pairs of samples whose later sample is in the measured part of the run. The error
-    follows from the scatter between 16 to 32 consecutive parts. In a long run, each part is at least four
-    times as long as the longest lag. The result is for particles that are independent of the centre of mass:
-    along axes on which the momentum is conserved, the velocity of the centre of mass is subtracted, and the
-    result is multiplied by N / (N - 1). Raises SceneError for too few frames, and for a single particle with
-    a constant velocity.
+    """Compute the mean of a correlation sum in `SUMS` and its error, by lag. Returns four arrays of shape
+    (lags,): the lags, the mean, its standard error, and the degrees of freedom of the error. The mean is over
+    all pairs of samples whose later sample is in the measured part of the run. The error follows from the
+    scatter between 16 to 32 consecutive parts. In a long run, each part is at least four times as long as the
+    longest lag. The result is for particles that are independent of the centre of mass: along axes on which
+    the momentum is conserved, the velocity of the centre of mass is subtracted, and the result is multiplied
+    by N / (N - 1). Raises SceneError for too few frames, and for a single particle with a constant velocity.
     """
     samples, lags = run.data["correlated_samples"].values, np.arange(run.data.sizes["lag"])
     pairs = np.maximum(samples[:, None] - lags, 0.0)
@@ -219,17 +211,15 @@ def mean_squared_displacement(
 ) -> Observable:
     """Measure the mean-squared displacement <|r(t) - r(0)|^2> over moving particles and time origins.
 
+    If the run has stored correlations with displacements, and none of `lags`, `species`, `particles` and
+    `per_axis` is passed, all samples are used, and the lags are the lags of the correlations.
+    `gaspart.analysis.flow` defines the local flow. The theoretical curve follows from the linear Boltzmann
+    equation with Enskog's diffusion coefficient.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, identified by its number in the scene. Single particles have the number
-        after the last species.
     particles : sequence of int, optional
         Measure only these particles. For fewer than 16 particles the error follows from the scatter between
         blocks of the run.
@@ -251,23 +241,6 @@ def mean_squared_displacement(
         If there are fewer than 16 moving particles and no selection is passed; if the flow changes with time;
         if frames are unevenly spaced; or if frames are too far apart to follow particles across periodic
         faces.
-
-    Notes
-    -----
-    If the run has stored correlations with displacements, and none of `lags`, `species`, `particles` and
-    `per_axis` is passed, all samples are used, and the lags are the lags of the correlations.
-    `gaspart.analysis.flow` defines the local flow. The theoretical curve follows from the linear Boltzmann
-    equation with Enskog's diffusion coefficient.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.mean_squared_displacement(simulation, lags=5).estimate.dims
-    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("msd", run.scene, species=species, particles=particles, about=about)
@@ -298,20 +271,14 @@ def velocity_autocorrelation(
 ) -> Observable:
     """Measure the velocity autocorrelation <v(0) . v(t)> / d over moving particles and time origins.
 
+    If the run has stored correlations, all samples are used, as in `mean_squared_displacement`, but the
+    correlations need not include displacements. The theoretical curve is (k_B T / m) exp(-2 nu t / d), where
+    nu is the collision rate. It is exact at short times, but does not contain the long-time tail.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     lags : int, optional
         Number of lags, in frames. Default: half of the frames.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, as in `mean_squared_displacement`.
-    particles : sequence of int, optional
-        Measure only these particles, as in `mean_squared_displacement`.
-    about : {"flow", "rest"}, default "flow"
-        Frame of reference, as in `mean_squared_displacement`.
 
     Returns
     -------
@@ -322,22 +289,6 @@ def velocity_autocorrelation(
     ------
     SceneError
         If there are fewer than 16 moving particles, or if frames are unevenly spaced.
-
-    Notes
-    -----
-    If the run has stored correlations, all samples are used, as in `mean_squared_displacement`, but the
-    correlations need not include displacements. The theoretical curve is (k_B T / m) exp(-2 nu t / d), where
-    nu is the collision rate. It is exact at short times, but does not contain the long-time tail.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.velocity_autocorrelation(simulation, lags=5).estimate.dims
-    ('lag',)
     """
     with open_run(source, start, about=about) as run:
         require_defined("vacf", run.scene, species=species, particles=particles, about=about)
@@ -354,9 +305,8 @@ def velocity_autocorrelation(
 def _accumulates(
     run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
 ) -> bool:
-    """Return True if a run has accumulated the requested curve (a name in `SUMS`).
-
-    The curve is used only if the gas does not flow.
+    """Return True if a run has accumulated the requested curve (a name in `SUMS`). The curve is used only if
+    the gas does not flow.
     """
     covers_all = lags is None and species is None and particles is None
     if not (name in run.data and covers_all and run.about == FLOW):

@@ -15,7 +15,7 @@ from gaspart.analysis.estimate import concise
 from gaspart.analysis.observables import name_of
 from gaspart.analysis.statistics import correlated_mean, slow_mean
 from gaspart.errors import SceneError
-from gaspart.scene.faces import wall_of
+from gaspart.scene.surfaces import wall_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,6 +64,13 @@ class ByFace(xr.Dataset):
 class Observable(ByFace):
     """Result of a function of `gaspart.analysis`, a Dataset.
 
+    Variables: the attribute `quantity` contains the name of the variable with the measured values. The suffix
+    _error is added to this name for the standard errors. If theory exists, the suffixes _theory and
+    _theory_error are added for the theoretical values and their uncertainties. An uncertainty of theory is
+    NaN if it is unknown, for example for an approximation. A scalar also has the variable `stretches` (time),
+    which contains the means over consecutive blocks of the run. Its attribute `freedom` is the number of
+    degrees of freedom of its error. Every variable has `units`.
+
     Parameters
     ----------
     data_vars : mapping, optional
@@ -72,15 +79,6 @@ class Observable(ByFace):
         Coordinates, as for `xarray.Dataset`.
     attrs : mapping, optional
         Attributes, as for `xarray.Dataset`.
-
-    Notes
-    -----
-    Variables: the attribute `quantity` contains the name of the variable with the measured values. The suffix
-    _error is added to this name for the standard errors. If theory exists, the suffixes _theory and
-    _theory_error are added for the theoretical values and their uncertainties. An uncertainty of theory is
-    NaN if it is unknown, for example for an approximation. A scalar also has the variable `stretches` (time),
-    which contains the means over consecutive blocks of the run. Its attribute `freedom` is the number of
-    degrees of freedom of its error. Every variable has `units`.
 
     Examples
     --------
@@ -98,50 +96,17 @@ class Observable(ByFace):
 
     @property
     def estimate(self) -> xr.DataArray:
-        """Measured values.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> gp.measure(simulation, "collision_rate").estimate.attrs["units"]
-        '1 / time'
-        """
+        """Measured values."""
         return self[self.attrs["quantity"]]
 
     @property
     def error(self) -> xr.DataArray:
-        """Standard uncertainties of the measured values.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> bool(gp.measure(simulation, "Z").error > 0.0)
-        True
-        """
+        """Standard uncertainties of the measured values."""
         return self[f"{self.attrs['quantity']}_error"]
 
     @property
     def theory(self) -> xr.DataArray | None:
-        """Theoretical values; None if there is no theory for this scene.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> round(float(gp.measure(simulation, "Z").theory), 2)
-        1.78
-        """
+        """Theoretical values; None if there is no theory for this scene."""
         return self.get(f"{self.attrs['quantity']}_theory")
 
     @property
@@ -150,16 +115,6 @@ class Observable(ByFace):
 
         The result is NaN if the standard deviation is 0, for example for a constant quantity, because the
         probability of a difference is then unknown.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> bool(abs(gp.measure(simulation, "Z").deviation) < 5.0)
-        True
         """
         if self.theory is None:
             return None
@@ -173,16 +128,6 @@ class Observable(ByFace):
 
         The text contains the short name of the quantity, if it has one. Several values are listed one by one.
         For a curve, only the number of values and the axis are stated.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> gp.analysis.rdf(simulation, bins=20).summary
-        'rdf: 20 values along distance (length)'
         """
         quantity, estimate = self.attrs["quantity"], self.estimate
         name = name_of(quantity)
@@ -210,6 +155,9 @@ class Observable(ByFace):
         For a scalar, the means of consecutive blocks of the run are plotted; for a field, a colour map or
         arrows.
 
+        A notebook displays the Axes. In a script, use ``plot().figure.savefig("z.png")`` to write a file, or
+        ``matplotlib.pyplot.show()`` to open a window.
+
         Parameters
         ----------
         theory : bool, default False
@@ -226,21 +174,6 @@ class Observable(ByFace):
         ------
         SceneError
             If the field has three axes.
-
-        Notes
-        -----
-        A notebook displays the Axes. In a script, use ``plot().figure.savefig("z.png")`` to write a file, or
-        ``matplotlib.pyplot.show()`` to open a window.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(40.0)
-        >>> gp.analysis.rdf(simulation, bins=20).plot().get_ylabel()
-        'radial distribution g(r)'
         """
         import matplotlib.pyplot as plt
 
@@ -405,9 +338,8 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """Build a result from its parts.
-
-    `along` maps the name of each dimension to its coordinate and the attributes of the coordinate.
+    """Build a result from its parts. `along` maps the name of each dimension to its coordinate and the
+    attributes of the coordinate.
     """
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}

@@ -23,7 +23,7 @@ from gaspart.state.tally import FURTHEST, PairImpulseTally
 from gaspart.theory.bulk import EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.correlator import pair_names, pairs_of
 from gaspart.trajectory.run_options import stored_tally
 from gaspart.workers import in_threads
 
@@ -38,9 +38,8 @@ _MOST_BOXES = 4
 def pair_counts(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> np.ndarray:
-    """Count the pairs of all frames in equal intervals of the distance.
-
-    Distances are to the nearest image, in double precision.
+    """Count the pairs of all frames in equal intervals of the distance. Distances are to the nearest image,
+    in double precision.
     """
     from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # importing numba takes 0.4 s
 
@@ -83,10 +82,8 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute g(r), averaged over frames (T, N, d), at the centres of shells.
-
-    Returns the centres (bins,) and g(r) (bins,). The counts are divided by the counts for an ideal gas with N
-    (N - 1) / 2 pairs.
+    """Compute g(r), averaged over frames (T, N, d), at the centres of shells. Returns the centres (bins,) and
+    g(r) (bins,). The counts are divided by the counts for an ideal gas with N (N - 1) / 2 pairs.
     """
     count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
@@ -115,9 +112,8 @@ _ALIKE = 1e-9
 
 
 def read_pair_impulses(run: Run) -> PairImpulseTally | None:
-    """Return the stored pair impulses of a run, or None.
-
-    None is also returned if the file does not contain all particles, because the temperature is then unknown.
+    """Return the stored pair impulses of a run, or None. None is also returned if the file does not contain
+    all particles, because the temperature is then unknown.
     """
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
@@ -128,12 +124,10 @@ def shell_volumes(bins: int, dimension: int) -> np.ndarray:
 
 
 def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> np.ndarray | None:
-    """Compute two contributions (2, S, bins) to g(r): from colliding pairs and from all other pairs.
-
-    The contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run
-    has not stored pair impulses, if the shells do not consist of whole stored shells, if a block has no
-    duration, or if no pair has collided. Without collisions impulses do not determine g(r), although g(r) is
-    not 0.
+    """Compute two contributions (2, S, bins) to g(r): from colliding pairs and from all other pairs. The
+    contributions are for S blocks of a run that begin at the frames `starts` (S,). Return None if the run has
+    not stored pair impulses, if the shells do not consist of whole stored shells, if a block has no duration,
+    or if no pair has collided. Without collisions impulses do not determine g(r), although g(r) is not 0.
     """
     has = read_pair_impulses(run)
     if has is None or starts[-1] == len(run.time) - 1 or furthest > has.furthest * (1.0 + _ALIKE):
@@ -153,9 +147,8 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
 
 
 def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
-    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins).
-
-    `volumes` (bins,) are the volumes of the shells.
+    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins). `volumes` (bins,)
+    are the volumes of the shells.
     """
     contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - total) @ volumes) / (contacts @ volumes)
@@ -174,17 +167,24 @@ def rdf(
 ) -> Observable:
     """Measure the radial distribution function g(r) of all particles of a periodic scene.
 
+    g(r) is the number of pairs at the distance r divided by the mean number for N independent particles,
+    which form N (N - 1) / 2 pairs. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends
+    to 1 + (1 - S(0)) / N at large distances; S(0) is the reduced compressibility (J. L. Lebowitz and J. K.
+    Percus, Phys. Rev. 122, 1675 (1961)).
+
+    If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
+    more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
+    method. The theoretical value is the mean over each bin of the approximation of Verlet and Weis, for
+    spheres in the fluid phase. The error of an empty bin is NaN, or 0 at distances at which hard particles
+    would overlap.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, optional
         Number of bins. Default: 100, or the bins of the stored pair impulses.
     furthest : float, [length], optional
         Largest distance. Default: the largest distance of the stored pair impulses. Without stored impulses,
         the default is five times the largest diameter, but less than half of the shortest side.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -196,32 +196,6 @@ def rdf(
     SceneError
         If the scene has walls or fewer than two particles, if there are too few frames, or if the distance is
         too large.
-
-    Notes
-    -----
-    g(r) is the number of pairs at the distance r divided by the mean number for N independent particles,
-    which form N (N - 1) / 2 pairs. So it is 1 at all distances in an ideal gas of any N. In a fluid it tends
-    to 1 + (1 - S(0)) / N at large distances; S(0) is the reduced compressibility [1]_.
-
-    If the run has stored pair impulses, and each bin consists of an equal number of stored shells, g(r) is
-    more accurate than from counts alone (`gaspart.analysis.pairs`). The attribute `estimator` names the
-    method. The theoretical value is the mean over each bin of the approximation of Verlet and Weis, for
-    spheres in the fluid phase. The error of an empty bin is NaN, or 0 at distances at
-    which hard particles would overlap.
-
-    References
-    ----------
-    .. [1] J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.rdf(simulation, bins=20).sizes["distance"]
-    20
     """
     with open_run(source, start) as run:
         require_defined("rdf", run.scene)
@@ -278,13 +252,15 @@ def stretches_of(run: Run) -> list[slice]:
 def pair_collision_rates(source: Source, start: float | None = None) -> Observable:
     """Measure the collision rate of a particle of one species with a second species.
 
+    The theoretical rate is exact except for the contact values. These are for an infinite mixture. A particle
+    of species i has N_i - 1 partners of its own species. The mean speed is computed for the finite number of
+    particles at fixed energy.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
         again.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -297,12 +273,6 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
     SceneError
         If the scene has single particles, if there are too few frames, or if the run was made without
         `pairs`.
-
-    Notes
-    -----
-    The theoretical rate is exact except for the contact values. These are for an infinite mixture. A particle
-    of species i has N_i - 1 partners of its own species. The mean speed is computed for the finite number of
-    particles at fixed energy.
 
     Examples
     --------
@@ -323,13 +293,19 @@ def pair_collision_rates(source: Source, start: float | None = None) -> Observab
 def contact_values(source: Source, start: float | None = None) -> Observable:
     """Measure the contact value g_ij of each pair of species from its collision rate.
 
+    The number N_ij of collisions in the time t is
+
+        n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
+
+    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
+    mass mu_ij. This formula is exact in equilibrium (S. Chapman and T. G. Cowling (1970)), if the mean speed
+    is computed for the finite number of particles at fixed energy.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
         A trajectory of a run with `pairs` (a path or an open trajectory), or a simulation, which is run
         again.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -341,31 +317,6 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
     SceneError
         Under the conditions of `pair_collision_rates`, and for a scene with walls, contacts that lose energy,
         or a polydisperse species.
-
-    Notes
-    -----
-    The number N_ij of collisions in the time t is
-
-        n_ij S sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)) t / V,
-
-    with n_ij = N_i N_j or N_i (N_i - 1) / 2 pairs of particles, S = 2 pi (2D) or 4 pi (3D), and the reduced
-    mass mu_ij. This formula is exact in equilibrium [1]_, if the mean speed is computed for the finite number
-    of particles at fixed energy.
-
-    References
-    ----------
-    .. [1] S. Chapman and T. G. Cowling (1970).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.contact_values(simulation).sizes["pair"]
-    3
     """
     with open_run(source, start, pairs=True) as run:
         estimates = estimates_of(run, contact_scales(run))
@@ -373,9 +324,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the number of collisions of each pair of species per collision of one particle.
-
-    The particle belongs to the first species of the pair.
+    """Compute the number of collisions of each pair of species per collision of one particle. The particle
+    belongs to the first species of the pair.
     """
     counts = [kind.count for kind in run.scene.species]
     pairs = pairs_of(run.scene)

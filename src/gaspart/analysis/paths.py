@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaspart.analysis.conditions import GROUPS
-from gaspart.analysis.run import Run, divide_frames
+from gaspart.analysis.run import Run
+from gaspart.analysis.run_data import divide_frames
 from gaspart.errors import SceneError
 
 MOST_FRAMES = 1000
@@ -51,11 +52,10 @@ def groups_of(
     chosen: np.ndarray | None = None,
     stride: int | None = None,
 ) -> Groups:
-    """Return the moving particles in groups, relative to the centre of mass or the local flow.
-
-    If there are fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of
-    mass, the mean squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the
-    total mass. If the gas flows, the values are relative to the local flow (`analysis.flow`).
+    """Return the moving particles in groups, relative to the centre of mass or the local flow. If there are
+    fewer than `GROUPS` particles, the groups are blocks of the run. Relative to the centre of mass, the mean
+    squared velocity of a particle of mass m is reduced by the factor 1 - m / M, where M is the total mass. If
+    the gas flows, the values are relative to the local flow (`analysis.flow`).
     """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
@@ -107,9 +107,8 @@ def _groups_of_particles(
 
 
 class _Values:
-    """Paths or velocities (T, M, d) of the moving particles in every `stride`-th frame.
-
-    If the gas flows, the values are relative to the local flow, and all values are in memory.
+    """Paths or velocities (T, M, d) of the moving particles in every `stride`-th frame. If the gas flows, the
+    values are relative to the local flow, and all values are in memory.
     """
 
     def __init__(self, run: Run, paths: bool, stride: int) -> None:
@@ -166,10 +165,9 @@ def _about_flow(run: Run, paths: bool, stride: int) -> np.ndarray:
 
 
 def _group_numbers(species: np.ndarray) -> np.ndarray:
-    """Return the group number of each particle, from its species (M,).
-
-    All groups of a mixture have the same composition. Otherwise differences between species would contribute
-    to the scatter between groups, and longer runs would not reduce this contribution.
+    """Return the group number of each particle, from its species (M,). All groups of a mixture have the same
+    composition. Otherwise differences between species would contribute to the scatter between groups, and
+    longer runs would not reduce this contribution.
     """
     if np.ptp(species) == 0:
         return np.repeat(np.arange(GROUPS), [len(part) for part in np.array_split(species, GROUPS)])
@@ -179,10 +177,8 @@ def _group_numbers(species: np.ndarray) -> np.ndarray:
 
 
 def stride_of(run: Run, count: int = GROUPS) -> int:
-    """Return the stride between the frames that are used.
-
-    The stride depends on the number of particles, because for fewer than `GROUPS` particles each group is a
-    block of the run.
+    """Return the stride between the frames that are used. The stride depends on the number of particles,
+    because for fewer than `GROUPS` particles each group is a block of the run.
     """
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 

@@ -30,11 +30,10 @@ _ROUNDING = 1e-12  # relative scatter of a constant value
 
 @dataclass(frozen=True)
 class Means:
-    """Mean values in cells, their standard errors, and the degrees of freedom of these errors.
-
-    All arrays have the same shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two
-    degrees of freedom, or if the value of the cell does not change, for example the velocity if only a single
-    particle crosses the cell. An error is 0 if nothing moves, or if all cells have the same value.
+    """Mean values in cells, their standard errors, and the degrees of freedom of these errors. All arrays
+    have the same shape. A value is NaN in an empty cell. An error is NaN if it has fewer than two degrees of
+    freedom, or if the value of the cell does not change, for example the velocity if only a single particle
+    crosses the cell. An error is 0 if nothing moves, or if all cells have the same value.
     """
 
     values: np.ndarray
@@ -47,12 +46,11 @@ class Means:
 
 
 def ratio(above: np.ndarray, below: np.ndarray, still: bool = False, counted: bool = False) -> Means:
-    """Compute the ratio sum A / sum B of two series, with its error.
-
-    The series have the shape (K, ...) for K consecutive blocks, at least 16. `still` is True if nothing
-    moves. `counted` is True if A counts particles, so that a cell is empty in blocks with A = 0. The degrees
-    of freedom of a cell are limited to the number that follows from the correlation of all cells together,
-    and to one less than the number of blocks in which it was occupied.
+    """Compute the ratio sum A / sum B of two series, with its error. The series have the shape (K, ...) for K
+    consecutive blocks, at least 16. `still` is True if nothing moves. `counted` is True if A counts
+    particles, so that a cell is empty in blocks with A = 0. The degrees of freedom of a cell are limited to
+    the number that follows from the correlation of all cells together, and to one less than the number of
+    blocks in which it was occupied.
     """
     total = below.sum(axis=0)
     values = np.divide(above.sum(axis=0), total, out=np.full(total.shape, np.nan), where=total > 0.0)
@@ -117,10 +115,9 @@ class Cells:
         return not any(self._values(part.velocities).any() for _, part in self.run.parts())
 
     def sums(self, weigh: Callable[[Run, np.ndarray], Sequence[np.ndarray | None]]) -> list[np.ndarray]:
-        """Sum weights in each cell over the frames of each block.
-
-        The frames are read in parts. `weigh` is called with a part and the cell numbers of its particles. It
-        returns arrays of weights (T, n), or None to count particles. Each sum has shape (K, *cells).
+        """Sum weights in each cell over the frames of each block. The frames are read in parts. `weigh` is
+        called with a part and the cell numbers of its particles. It returns arrays of weights (T, n), or None
+        to count particles. Each sum has shape (K, *cells).
         """
         shape = int(self.blocks[-1]) + 1, *self.numbers
         sums: list[np.ndarray] = []
@@ -180,9 +177,8 @@ class Cells:
         return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
-        """Compute k_B T: twice the kinetic energy per degree of freedom, relative to the mean motion.
-
-        If `local` is True, velocities are always relative to the flow in these cells. Otherwise they are
+        """Compute k_B T: twice the kinetic energy per degree of freedom, relative to the mean motion. If
+        `local` is True, velocities are always relative to the flow in these cells. Otherwise they are
         relative to a local flow only if the gas flows, see `flow.about_the_flow`.
         """
         about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)

@@ -15,20 +15,18 @@ import xarray as xr
 
 from gaspart import theory
 from gaspart.analysis.conditions import SLIDING, VARYING
-from gaspart.analysis.flow import ABOUT, FLOW, Peculiar, about_the_flow, flow_axes, mean_motion, sum_squares
+from gaspart.analysis.flow import Peculiar, about_the_flow, mean_motion, sum_squares
+from gaspart.analysis.run_data import ABOUT, FLOW, RunData
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
-from gaspart.scene.accessible import Accessible
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open, refuse_sheared
 from gaspart.scene.gas import Gas, Mixture
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.simulation import Simulation
-from gaspart.state.insertion import per_particle
 from gaspart.state.state import by_number
 from gaspart.state.tally import Tally
-from gaspart.trajectory.pairs import PairCounter
+from gaspart.trajectory.correlator import PairCounter
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml
@@ -41,178 +39,19 @@ REPEATED = 129
 """Number of frames if a simulation is run again for a measurement; fewer if there are many particles."""
 _AT_REST = 1e-24  # fraction of a kinetic energy: the square of a rounding error
 _MOST = 20_000_000  # maximum number of values in these frames
-_BLOCK = 500_000  # number of values that are read at once; more if a single frame has more
 
 
 @dataclass(frozen=True)
-class Run:
-    """Measured part of a run: T frames of N particles in d dimensions.
-
-    time : (T,), times of the frames.
-    data : the frames, with cumulative counters of shape (T,) or (T, walls).
-    centred : True if the total momentum is known to be zero along the axes on which it is conserved. Then a
-        temperature is defined even if the file does not contain all particles or their velocities.
-    about : reference of velocities and displacements (`analysis.flow`): the local "flow" of the gas, or
-        "rest".
-    """
-
-    scene: Scene
-    time: np.ndarray
-    data: xr.Dataset
-    centred: bool = False
-    about: str = FLOW
-
-    @property
-    def count(self) -> int:
-        """Number of particles N in the scene; with open faces, number of particle numbers in use."""
-        return self.scene.capacity
-
-    @property
-    def dimension(self) -> int:
-        """Dimension, 2 or 3."""
-        return self.scene.dimension
-
-    @property
-    def periodic(self) -> np.ndarray:
-        """Mask (d,) of periodic axes."""
-        return np.array(self.scene.container.periodic)
-
-    @property
-    def interval(self) -> float:
-        """Mean time between frames."""
-        return float(np.diff(self.time).mean())
-
-    def increments(self, name: str) -> np.ndarray:
-        """Compute the growth of a counter in each interval, shape (T - 1, ...)."""
-        return np.diff(self._counter(name), axis=0)
-
-    def growth(self, name: str) -> np.ndarray:
-        """Compute the growth of a counter per time."""
-        first, last = self._counter(name)[[0, -1]]
-        return (last - first) / (self.time[-1] - self.time[0])
-
-    def _counter(self, name: str) -> np.ndarray:
-        if name not in self.data:
-            raise SceneError(
-                name, "missing", "the engine does not tally it, or an older version wrote the file"
-            )
-        return np.asarray(self.data[name].values)
-
-    def block_length(self, blocks: int) -> int:
-        """Return the number of frames in each of `blocks` equal blocks, after the first frame.
-
-        Frames that remain do not belong to any block. Raises ValueError if there are too few frames.
-        """
-        length = (len(self.time) - 1) // blocks
-        if length < 1:
-            raise ValueError(f"blocks: {blocks} (more than the {len(self.time) - 1} intervals of a run)")
-        return length
-
-    @cached_property
-    def positions(self) -> np.ndarray:
-        """Positions (T, N, d); with open faces, NaN for particle numbers that are not in use."""
-        return self.vectors("coordinates").values.astype(float)
-
-    @cached_property
-    def velocities(self) -> np.ndarray:
-        """Velocities (T, N, d)."""
-        return self.vectors("velocities").values.astype(float)
-
-    def vectors(self, name: str) -> xr.DataArray:
-        """Return the vectors of all frames; they are read from the file when they are used."""
-        if name not in self.data:
-            kept = self.data.attrs.get("keep")
-            rule = f"the file holds only {kept} of the particles, and {name} are needed; run without keep"
-            raise SceneError("keep", kept, rule)
-        return self.data[name]
-
-    def frame(self, name: str, number: int) -> np.ndarray:
-        """Read the vectors (N, d) of one frame."""
-        return np.asarray(self.vectors(name)[number].values, dtype=float)
-
-    def blocks(self, name: str, frames: slice) -> Iterator[np.ndarray]:
-        """Read the vectors of some frames in blocks that need limited memory."""
-        values = self.vectors(name)[frames]
-        for part in divide_frames(len(values), self._numbers):
-            yield values[part].values
-
-    @property
-    def _numbers(self) -> int:
-        """Number of values in the vectors of a frame."""
-        return self.data.sizes["atom"] * self.dimension
-
-    def parts(self) -> Iterator[tuple[slice, Run]]:
-        """Divide the run into parts that need limited memory."""
-        for frames in divide_frames(len(self.time), self._numbers):
-            yield frames, replace(self, time=self.time[frames], data=self.data.isel(frame=frames))
-
-    @cached_property
-    def masses(self) -> np.ndarray:
-        """Masses (N,), infinite for fixed particles; single particles come first, then species."""
-        fixed = self._each(per_particle(self.scene, "fixed")).astype(bool)
-        return np.where(fixed, np.inf, self._each(per_particle(self.scene, "mass")).astype(float))
-
-    @cached_property
-    def radii(self) -> np.ndarray:
-        """Radii (N,)."""
-        return self._each(per_particle(self.scene, "radius")).astype(float)
-
-    def _each(self, values: np.ndarray) -> np.ndarray:
-        """Extend values of the initial particles to all N particle numbers.
-
-        Particles that enter later have the same properties as the initial particles.
-        """
-        return np.resize(values, self.count)
-
-    @cached_property
-    def species(self) -> np.ndarray:
-        """Species number (N,) of each particle, as in the scene; single particles have the last number."""
-        counts = [len(self.scene.particles), *(kind.count for kind in self.scene.species)]
-        return self._each(np.repeat([len(self.scene.species), *range(len(self.scene.species))], counts))
-
-    @cached_property
-    def moving(self) -> np.ndarray:
-        """Mask (N,) of particles that are not fixed.
-
-        Raises SceneError if the file does not contain all particles, unless the run is centred.
-        """
-        if not self.centred:
-            self.require_all()
-        return np.isfinite(self.masses)
-
-    @property
-    def conserved(self) -> np.ndarray:
-        """Mask (d,) of axes along which the total momentum is conserved.
-
-        Motion along these axes is measured relative to the centre of mass. If motion is measured relative to
-        rest, all elements are False.
-        """
-        return np.array(self.scene.conserved_axes) & (self.about == FLOW)
-
-    @cached_property
-    def accessible(self) -> Accessible:
-        """Volume and areas accessible to centres, excluding the fixed particles of the run.
-
-        Raises SceneError if the file does not contain the fixed species.
-        """
-        if not any(kind.fixed and kind.count for kind in self.scene.species):
-            return Accessible(self.scene)
-        fixed = ~self.moving
-        return Accessible(self.scene, (self.frame("coordinates", 0)[fixed], self.radii[fixed]))
+class Run(RunData):
+    """Measured part of a run, with temperatures and the gas that theory knows."""
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of the moving particles relative to the local flow or the centre of mass.
-
-        If the gas flows, the velocities are relative to the local flow. Otherwise they are relative to the
-        centre of mass along axes on which the momentum is conserved (see `flow`).
+        """Velocities of the moving particles relative to the local flow or the centre of mass. If the gas
+        flows, the velocities are relative to the local flow. Otherwise they are relative to the centre of
+        mass along axes on which the momentum is conserved (see `flow`).
         """
         return about_the_flow(self)
-
-    @cached_property
-    def flow_axes(self) -> list[int]:
-        """Axes along which the flow velocity may vary (see `flow.flow_axes`)."""
-        return flow_axes(self) if self.about == FLOW else []
 
     @property
     def peculiar(self) -> np.ndarray:
@@ -221,10 +60,8 @@ class Run:
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """Number of translational degrees of freedom in each frame, shape (T,).
-
-        Raises SceneError if there is no degree of freedom, for example for one particle in a periodic
-        container.
+        """Number of translational degrees of freedom in each frame, shape (T,). Raises SceneError if there is
+        no degree of freedom, for example for one particle in a periodic container.
         """
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
@@ -241,12 +78,11 @@ class Run:
 
     @cached_property
     def temperatures(self) -> np.ndarray:
-        """Temperature k_B T of each frame, shape (T,).
-
-        The temperature is twice the translational kinetic energy per degree of freedom, relative to the mean
-        motion (see `motion`). It is set to 0 if this energy is only a rounding error of the centre-of-mass
-        velocity. If the file does not contain all particles, the temperature is computed by `_of_all`. Raises
-        SceneError under the conditions of `freedoms`.
+        """Temperature k_B T of each frame, shape (T,). The temperature is twice the translational kinetic
+        energy per degree of freedom, relative to the mean motion (see `motion`). It is set to 0 if this
+        energy is only a rounding error of the centre-of-mass velocity. If the file does not contain all
+        particles, the temperature is computed by `_of_all`. Raises SceneError under the conditions of
+        `freedoms`.
         """
         refuse_open(self.scene, "changes the particles: there is no temperature of the whole run")
         lacking = self.is_subset or "velocities" not in self.data
@@ -265,10 +101,9 @@ class Run:
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Kinetic energies relative to the flow and to rest, and degrees of freedom.
-
-        The rows of the array (3, T) are twice the energy relative to the flow, twice the energy relative to
-        rest, and the degrees of freedom.
+        """Kinetic energies relative to the flow and to rest, and degrees of freedom. The rows of the array
+        (3, T) are twice the energy relative to the flow, twice the energy relative to rest, and the degrees
+        of freedom.
         """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
@@ -280,10 +115,9 @@ class Run:
 
     @property
     def _of_all(self) -> np.ndarray:
-        """Temperature k_B T (T,) of each frame, from the energy of all particles.
-
-        The run must be centred or contain the tally of the stress. The energy includes rotation and is
-        relative to the centre of mass of all particles, even if the file contains only some of them.
+        """Temperature k_B T (T,) of each frame, from the energy of all particles. The run must be centred or
+        contain the tally of the stress. The energy includes rotation and is relative to the centre of mass of
+        all particles, even if the file contains only some of them.
         """
         d, count = self.dimension, self.count
         freedom = d * count - int(self.conserved.sum()) + self.scene.rough * count * (d * (d - 1) // 2)
@@ -305,31 +139,14 @@ class Run:
         return bool(np.any(self.scene.gravity))
 
     @property
-    def is_subset(self) -> bool:
-        """True if the file contains only some of the particles."""
-        return self.data.sizes["atom"] < self.count
-
-    @property
-    def has_states(self) -> bool:
-        """True if the positions and velocities of all particles are in the file."""
-        return not self.is_subset and {"coordinates", "velocities"} <= set(self.data.variables)
-
-    def require_all(self) -> None:
-        """Raise SceneError if only some of the particles are in the file."""
-        if self.is_subset:
-            rule = f"needs all {self.count} particles in the file"
-            raise SceneError("follow", self.data.sizes["atom"], rule)
-
-    @property
     def dissipates(self) -> bool:
         """True if contacts lose energy."""
         return self.scene.dissipates
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if the scene has at least two particles in a periodic container.
-
-        None otherwise, and unless the particles are a fluid in the density range of its equation of state.
+        """Gas of the scene, if the scene has at least two particles in a periodic container. None otherwise,
+        and unless the particles are a fluid in the density range of its equation of state.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -338,9 +155,8 @@ class Run:
 
     @property
     def _is_fluid(self) -> bool:
-        """True if the density is in the range of the fluid, and the run does not begin in a crystal.
-
-        Above the freezing density a crystal does not melt, whereas a compressed fluid remains one for long.
+        """True if the density is in the range of the fluid, and the run does not begin in a crystal. Above
+        the freezing density a crystal does not melt, whereas a compressed fluid remains one for long.
         """
         scene = self.scene
         if scene.packing_fraction > theory.HIGHEST_PACKING_FRACTION[scene.dimension]:
@@ -360,19 +176,11 @@ class Run:
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run; None if nothing moves.
-
-        Raises SceneError under the conditions of `moving`.
+        """The `fluid` at the temperature of the run; None if nothing moves. Raises SceneError under the
+        conditions of `moving`.
         """
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
-
-
-def divide_frames(frames: int, numbers: int) -> Iterator[slice]:
-    """Divide frames into blocks that need limited memory."""
-    length = max(1, _BLOCK // max(1, numbers))
-    for first in range(0, frames, length):
-        yield slice(first, min(first + length, frames))
 
 
 def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
@@ -405,9 +213,8 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError if no collision occurred in the measured part of a run.
-
-    The scatter of the observable would then be unknown.
+    """Raise SceneError if no collision occurred in the measured part of a run. The scatter of the observable
+    would then be unknown.
     """
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
@@ -422,10 +229,9 @@ def open_run(
     varying: bool = False,
     about: str = FLOW,
 ) -> Iterator[Run]:
-    """Open the part of a source after the time `start`.
-
-    By default the first quarter of the run is discarded. A simulation is run again from its start to its
-    present time. If `pairs` is True, the collisions of each pair of species are counted.
+    """Open the part of a source after the time `start`. By default the first quarter of the run is discarded.
+    A simulation is run again from its start to its present time. If `pairs` is True, the collisions of each
+    pair of species are counted.
 
     sheared : True if the observable is defined in a sheared gas.
     varying : True if the observable is defined with open faces.
@@ -462,9 +268,8 @@ def open_run(
 
 
 def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """Run a simulation again from its start, and return its frames at equally spaced times.
-
-    Raises SceneError for a simulation that has not advanced.
+    """Run a simulation again from its start, and return its frames at equally spaced times. Raises SceneError
+    for a simulation that has not advanced.
     """
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:

@@ -19,9 +19,8 @@ from gaspart.state.tally import compressibility_factor
 
 
 def compressibility(run: Run) -> np.ndarray:
-    r"""Compute the compressibility factor Z in each interval by the virial theorem, shape (T - 1,).
-
-    With impulses dp exchanged at the distance dr,
+    r"""Compute the compressibility factor Z in each interval by the virial theorem, shape (T - 1,). With
+    impulses dp exchanged at the distance dr,
 
         Z = P V / (N k_B T) = 1 + sum |dr . dp| / (d N k_B T t).
 
@@ -39,10 +38,9 @@ def compressibility(run: Run) -> np.ndarray:
 
 
 def collisions(run: Run) -> np.ndarray:
-    """Compute the mean collisions of a moving particle in each interval, shape (T - 1,).
-
-    A collision of two moving particles counts for both. Raises SceneError if the file does not contain all
-    particles, or does not contain the number of collisions with fixed particles.
+    """Compute the mean collisions of a moving particle in each interval, shape (T - 1,). A collision of two
+    moving particles counts for both. Raises SceneError if the file does not contain all particles, or does
+    not contain the number of collisions with fixed particles.
     """
     scene, met, count = run.scene, run.increments("collisions"), int(run.moving.sum())
     if count == 1:
@@ -60,27 +58,24 @@ def collision_rate(run: Run) -> np.ndarray:
 
 
 def face_impulses(run: Run) -> np.ndarray:
-    """Compute the momentum (T - 1, 2d) given to each face in each interval, positive outwards.
-
-    The momentum is 0 along axes without walls.
+    """Compute the momentum (T - 1, 2d) given to each face in each interval, positive outwards. The momentum
+    is 0 along axes without walls.
     """
     return np.asarray(run.increments("wall_impulse")[:, : 2 * run.dimension])
 
 
 def face_pressures(run: Run) -> np.ndarray:
-    """Compute the pressure on each face in each interval, as defined by `analysis.wall_pressure`.
-
-    The shape is (T - 1, 2d). Unknown pressures are NaN.
+    """Compute the pressure on each face in each interval, as defined by `analysis.wall_pressure`. The shape
+    is (T - 1, 2d). Unknown pressures are NaN.
     """
     return per_area(run, face_impulses(run), "momentum_per_area") / np.diff(run.time)[:, None]
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """K blocks of a run with equal lengths; the remaining frames are not used.
-
-    Neighbouring blocks share the frame at which counters are read. Averages over frames exclude the first
-    frame of the run. Raises ValueError for more blocks than intervals.
+    """K blocks of a run with equal lengths; the remaining frames are not used. Neighbouring blocks share the
+    frame at which counters are read. Averages over frames exclude the first frame of the run. Raises
+    ValueError for more blocks than intervals.
     """
 
     run: Run
@@ -121,9 +116,8 @@ class Blocks:
         return self.means(values[1:])
 
     def sums(self, grid: Grid, cells: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
-        """Sum weights (T, N), or count particles, in cells over the frames of each block.
-
-        The shape is (K, *cells).
+        """Sum weights (T, N), or count particles, in cells over the frames of each block. The shape is (K,
+        *cells).
         """
         block = np.arange(self.number).repeat(self.length)
         chosen = None if weights is None else np.broadcast_to(weights, cells.shape)[self.frames]
@@ -131,9 +125,8 @@ class Blocks:
 
 
 def over(values: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Sum the values (T - 1, ...) of the intervals between frames `ends` (K + 1,).
-
-    The sums have shape (K, ...).
+    """Sum the values (T - 1, ...) of the intervals between frames `ends` (K + 1,). The sums have shape (K,
+    ...).
     """
     return np.add.reduceat(values[: ends[-1]], ends[:-1], axis=0)
 
@@ -149,18 +142,16 @@ _FINE = 2000
 def plateau(
     volume: np.ndarray, pressure: np.ndarray, error: np.ndarray
 ) -> tuple[float, float, tuple[float, float]]:
-    """Compute the coexistence pressure from a loop of p(V), by Maxwell's equal-area construction.
-
-    A horizontal line at this pressure cuts off equal areas of the loop. Returns the pressure, its error, and
-    the volumes at both ends of the line.
-
-    The arguments are the volume per particle (in any order), the pressure and its standard errors, each of
-    shape (P,). A finite system in the coexistence region has a loop (Mayer and Wood, J. Chem. Phys. 42, 4268
-    (1965)) because the interface of the finite system costs free energy. If the areas are equal, both phases
-    have the same chemical potential. The loop is interpolated between the points by the monotonic method of
-    Fritsch and Carlson. For the error, the points are drawn again from their errors many times; the error is
-    half of the width of the central 68 % of the resulting pressures. Without a loop, or if less than half of
-    the bootstrap samples have a loop, the result is NaN, NaN, (NaN, NaN).
+    """Compute the coexistence pressure from a loop of p(V), by Maxwell's equal-area construction. A
+    horizontal line at this pressure cuts off equal areas of the loop. Returns the pressure, its error, and
+    the volumes at both ends of the line. The arguments are the volume per particle (in any order), the
+    pressure and its standard errors, each of shape (P,). A finite system in the coexistence region has a loop
+    (Mayer and Wood, J. Chem. Phys. 42, 4268 (1965)) because the interface of the finite system costs free
+    energy. If the areas are equal, both phases have the same chemical potential. The loop is interpolated
+    between the points by the monotonic method of Fritsch and Carlson. For the error, the points are drawn
+    again from their errors many times; the error is half of the width of the central 68 % of the resulting
+    pressures. Without a loop, or if less than half of the bootstrap samples have a loop, the result is NaN,
+    NaN, (NaN, NaN).
     """
     order = np.argsort(volume)
     volume, pressure, error = (np.asarray(values, dtype=float)[order] for values in (volume, pressure, error))

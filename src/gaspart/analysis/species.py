@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gaspart.analysis.flow import FLOW, mean_motion
+from gaspart.analysis.flow import mean_motion
 from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import observables_with, selecting
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory
 
@@ -21,12 +22,13 @@ from gaspart.trajectory.reading import open_trajectory
 def by_species(source: Source, start: float | None = None, about: str = FLOW) -> xr.Dataset:
     """Measure the properties of each moving species.
 
+    Relative to the centre of mass, the mean squared velocity of a particle of mass m is reduced by the factor
+    1 - m / M. M is the total mass of the particles whose mean velocity is subtracted. Temperatures and speeds
+    are corrected by this factor, which is exact in equilibrium. Call `to_dataframe` on the variables without
+    lags to obtain a table with one row per species.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
     about : {"flow", "rest"}, default "flow"
         Frame of reference. "flow": velocities and paths are relative to the local flow if the gas flows.
         Otherwise they are relative to the centre of mass, along axes on which the total momentum is conserved
@@ -49,13 +51,6 @@ def by_species(source: Source, start: float | None = None, about: str = FLOW) ->
     ------
     SceneError
         If nothing moves, or there are too few frames.
-
-    Notes
-    -----
-    Relative to the centre of mass, the mean squared velocity of a particle of mass m is reduced by the factor
-    1 - m / M. M is the total mass of the particles whose mean velocity is subtracted. Temperatures and speeds
-    are corrected by this factor, which is exact in equilibrium. Call `to_dataframe` on the variables without
-    lags to obtain a table with one row per species.
 
     Examples
     --------
@@ -126,9 +121,8 @@ def _of_velocities(run: Run, kind: int) -> dict[str, Observable]:
 
 
 def _column(name: str, results: list[Observable | None]) -> xr.Dataset:
-    """Combine the values of one observable for all species, with uncertainties.
-
-    The result is empty if the observable could not be measured for any species.
+    """Combine the values of one observable for all species, with uncertainties. The result is empty if the
+    observable could not be measured for any species.
     """
     available = [result for result in results if result is not None]
     if not available:

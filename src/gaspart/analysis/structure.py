@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from gaspart.analysis.expected.equilibrium import describe
-from gaspart.analysis.flow import FLOW, Grid, accessible_fraction, mean_motion
+from gaspart.analysis.flow import Grid, accessible_fraction, mean_motion
 from gaspart.analysis.impulses import default_bins, described_density, mixed_density
 from gaspart.analysis.observable import Observable, observable, scalar, with_freedom
 from gaspart.analysis.observables import observables_with, require_defined
 from gaspart.analysis.pairs import STRETCHES, chosen_frames
 from gaspart.analysis.profiles import Cells, Means
 from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run_data import FLOW
 from gaspart.analysis.statistics import histogram_means
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
@@ -35,14 +36,15 @@ def speed_distribution(
 ) -> Observable:
     """Measure the probability density of the speeds of moving particles over all frames.
 
+    Velocities of a particle of mass m relative to the flow (see `gaspart.analysis.flow`) are multiplied by
+    sqrt(M / (M - m)). M is the total mass of the particles whose mean velocity is subtracted. The error
+    follows from the scatter between groups of particles. It is NaN in an empty bin. The theoretical density
+    is Maxwell's distribution at the temperature of the run. For one species at a constant kinetic energy it
+    is the exact distribution for the finite number of particles. There is no theory if the gas flows and
+    therefore has no uniform temperature.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    bins : int, default 40
-        Number of bins.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
     fastest : float, [length/time], optional
         Upper end of the bins. Default: four thermal speeds.
     about : {"flow", "rest"}, default "flow"
@@ -58,24 +60,6 @@ def speed_distribution(
     ------
     SceneError
         If there are fewer than 16 moving particles, or particles are at rest.
-
-    Notes
-    -----
-    Velocities of a particle of mass m relative to the flow (see `gaspart.analysis.flow`) are multiplied by
-    sqrt(M / (M - m)). M is the total mass of the particles whose mean velocity is subtracted. The error
-    follows from the scatter between groups of particles. It is NaN in an empty bin. The theoretical density
-    is Maxwell's distribution at the temperature of the run. For one species at a constant kinetic energy it
-    is the exact distribution for the finite number of particles. There is no theory if the gas flows and
-    therefore has no uniform temperature.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.speed_distribution(simulation, bins=10).sizes["speed"]
-    10
     """
     bins = count_of("bins", bins, least=2)
     with open_run(source, start, sheared=True, about=about) as run:
@@ -102,10 +86,8 @@ def speed_distribution(
 
 
 def _speeds(run: Run, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Count speeds in bins, reading the frames in parts.
-
-    Returns the counts (groups, bins), the numbers of speeds (groups,), and the sum of squared velocities in
-    each frame (T,).
+    """Count speeds in bins, reading the frames in parts. Returns the counts (groups, bins), the numbers of
+    speeds (groups,), and the sum of squared velocities in each frame (T,).
     """
     about, energy = mean_motion(run), np.zeros(len(run.time))
     # every group contains a fraction of each species; the species are stored one after the other
@@ -138,10 +120,20 @@ def profile(
 ) -> Observable:
     """Measure the profile of a property along an axis, averaged over all frames.
 
+    The error of each bin includes the time correlation in this bin. An error is NaN if it has fewer than two
+    degrees of freedom, because the run is then too short compared with the correlation time in this bin. It
+    is also NaN if the value of the bin does not change. It is 0 if nothing moves, or if all bins have the
+    same value.
+
+    If the run has stored impulses along the axis, and each bin consists of an integer number of stored bins,
+    the density is also computed from impulses. The result is more accurate than from counts alone
+    (`gaspart.analysis.impulses`). The attribute `estimator` names the method.
+
+    For equal particles under gravity along this axis, the theoretical density is hydrostatic, with the
+    equation of state of the fluid. The theoretical temperature in equilibrium is uniform.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     of : {"density", "temperature"}, default "density"
         "density": number of moving particles divided by the volume of the bin. Only volume inside the
         container counts (faces may move), and only volume that fixed particles leave accessible to centres
@@ -152,10 +144,6 @@ def profile(
     bins : int, optional
         Number of bins. Default: 40. If the run has stored impulses along the axis, the default for a density
         is their number of bins.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
-    species : int, optional
-        Measure only this species, identified by its number in the scene.
     about : {"flow", "rest"}, default "flow"
         Frame of reference of a temperature. "flow": relative to the local flow if there are sliding or moving
         faces, a force along a periodic axis, or a uniform wind. Otherwise relative to the centre of mass, if
@@ -171,20 +159,6 @@ def profile(
     ------
     SceneError
         If the property or the axis is unknown, if the species does not move, or if there are too few frames.
-
-    Notes
-    -----
-    The error of each bin includes the time correlation in this bin. An error is NaN if it has fewer than two
-    degrees of freedom, because the run is then too short compared with the correlation time in this bin. It
-    is also NaN if the value of the bin does not change. It is 0 if nothing moves, or if all bins have the
-    same value.
-
-    If the run has stored impulses along the axis, and each bin consists of an integer number of stored bins,
-    the density is also computed from impulses. The result is more accurate than from counts alone
-    (`gaspart.analysis.impulses`). The attribute `estimator` names the method.
-
-    For equal particles under gravity along this axis, the theoretical density is hydrostatic, with the
-    equation of state of the fluid. The theoretical temperature in equilibrium is uniform.
 
     Examples
     --------
@@ -223,10 +197,6 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
 
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
     **selection
         Other arguments of `profile`.
 
@@ -234,18 +204,6 @@ def density(source: Source, start: float | None = None, **selection: Any) -> Obs
     -------
     Observable
         The profile (position,) in [1/length^d].
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(
-    ...     container=gp.Container(lengths=(10.0, 10.0)),
-    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
-    ... )
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(20.0)
-    >>> gp.analysis.density(simulation, axis="x", bins=4).estimate.shape
-    (4,)
     """
     return profile(source, "density", start=start, **selection)
 
@@ -255,10 +213,6 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
 
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
     **selection
         Other arguments of `profile`.
 
@@ -266,18 +220,6 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
     -------
     Observable
         The profile (position,) in [energy].
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> scene = gp.Scene(
-    ...     container=gp.Container(lengths=(10.0, 10.0)),
-    ...     species=[gp.Species(count=20, radius=0.5, temperature=1.0)],
-    ... )
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(20.0)
-    >>> gp.analysis.temperature(simulation, axis="x", bins=4).estimate.shape
-    (4,)
     """
     return profile(source, "temperature", start=start, **selection)
 
@@ -285,12 +227,8 @@ def temperature(source: Source, start: float | None = None, **selection: Any) ->
 def order_parameter(source: Source, start: float | None = None) -> Observable:
     """Measure the global bond order of a periodic scene: |<psi_6>| of discs, Q_6 of spheres.
 
-    Parameters
-    ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
+    The parameter is 1 in a triangular lattice of discs, 0.5745 in a face-centred cubic lattice, and small in
+    a fluid (about 1 / sqrt(12 N) for spheres).
 
     Returns
     -------
@@ -301,21 +239,6 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If the scene has walls, or there are too few frames.
-
-    Notes
-    -----
-    The parameter is 1 in a triangular lattice of discs, 0.5745 in a face-centred cubic lattice, and small in
-    a fluid (about 1 / sqrt(12 N) for spheres).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.order_parameter(simulation).estimate.attrs["units"]
-    '1'
     """
     from gaspart.analysis.bond_order import global_steinhardt, hexatic
 
@@ -336,10 +259,9 @@ def order_parameter(source: Source, start: float | None = None) -> Observable:
 
 
 def _density(run: Run, axis: int, bins: int, species: int | None) -> Means:
-    """Compute the density of the moving particles, or of one species.
-
-    The density is NaN in bins from which fixed particles exclude all centres. Raises SceneError if particles
-    are of several kinds and the file does not contain all of them.
+    """Compute the density of the moving particles, or of one species. The density is NaN in bins from which
+    fixed particles exclude all centres. Raises SceneError if particles are of several kinds and the file does
+    not contain all of them.
     """
     if len(run.scene.kinds) > 1:
         run.require_all()

@@ -17,7 +17,7 @@ from gaspart.analysis.pairs import STRETCHES, stretches_of
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import means_of
 from gaspart.keys.values import count_of, number
-from gaspart.trajectory.pairs import pair_names, pairs_of
+from gaspart.trajectory.correlator import pair_names, pairs_of
 from gaspart.workers import in_threads
 
 # Density waves of a periodic container: the permitted wave vectors, and their amplitudes.
@@ -30,12 +30,9 @@ candidates. Up to twice this number, every second wave along each axis is a cand
 
 
 def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return one of each pair of wave vectors k, -k with 0 < |k| <= highest.
-
-    The wave vectors are k = 2 pi n / L.
-
-    Both vectors of a pair k, -k have the same S. `lengths` has shape (d,). Returns the integers n (M, d) and
-    |k| (M,), by ascending |k|.
+    """Return one of each pair of wave vectors k, -k with 0 < |k| <= highest. The wave vectors are k = 2 pi n
+    / L. Both vectors of a pair k, -k have the same S. `lengths` has shape (d,). Returns the integers n (M, d)
+    and |k| (M,), by ascending |k|.
     """
     unit = 2.0 * np.pi / np.asarray(lengths, dtype=float)
     most = (highest / unit).astype(int)
@@ -52,13 +49,10 @@ def wave_vectors(lengths: Sequence[float] | np.ndarray, highest: float) -> tuple
 def shells_of(
     lengths: Sequence[float] | np.ndarray, highest: float, bins: int, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Select up to `most` wave vectors (see `wave_vectors`) in each interval of |k|.
-
-    `bins` is the number of equal intervals.
-
-    The selected vectors are evenly distributed among the candidates. If there are too many wave vectors, only
-    every second (fourth, ...) wave along each axis is a candidate. Returns n (M, d), the shell number of each
-    vector (M,), and the mean |k| (S,) of the S nonempty shells.
+    """Select up to `most` wave vectors (see `wave_vectors`) in each interval of |k|. `bins` is the number of
+    equal intervals. The selected vectors are evenly distributed among the candidates. If there are too many
+    wave vectors, only every second (fourth, ...) wave along each axis is a candidate. Returns n (M, d), the
+    shell number of each vector (M,), and the mean |k| (S,) of the S nonempty shells.
     """
     parts, low, step = [], 0.0, 1
     while low < highest:
@@ -92,9 +86,8 @@ def factors(
 def amplitudes(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, waves: np.ndarray, threads: int = 1
 ) -> np.ndarray:
-    """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors.
-
-    The wave vectors are k = 2 pi n / L.
+    """Compute the sum of exp(i k.r) over the particles in each frame, for several wave vectors. The wave
+    vectors are k = 2 pi n / L.
     """
     from gaspart.kernels.analysis.waves import sum_waves  # importing numba takes 0.4 s
 
@@ -111,11 +104,9 @@ def amplitudes(
 
 
 def _factor_rows(waves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the products from which all exponential factors are computed, and the rows of each wave.
-
-    The factors are exp(2 pi i n x / L).
-
-    For waves (M, d), `sum_waves` expects the products and the rows as arrays (R, 2) and (M, d).
+    """Return the products from which all exponential factors are computed, and the rows of each wave. The
+    factors are exp(2 pi i n x / L). For waves (M, d), `sum_waves` expects the products and the rows as arrays
+    (R, 2) and (M, d).
     """
     from gaspart.kernels.analysis.waves import CONJUGATE
 
@@ -154,16 +145,18 @@ def structure_factor(
 ) -> Observable:
     """Measure the static structure factor S(k) = <|sum exp(i k.r)|^2> / N of a periodic scene.
 
+    The sums are exact at the wave vectors that the periodic container permits: k = 2 pi (n_x / L_x, ...). The
+    vector k = 0, at which S = N, is excluded. The values are averaged in intervals of |k|, over up to 24
+    vectors in each interval. An interval without vectors is omitted. In a fluid, S(k) tends to the reduced
+    compressibility k_B T d rho / dP at small k, and to 1 at large k. The theoretical curve for equal spheres
+    is the approximation of Verlet and Weis.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, default 60
         Number of equal intervals of |k|.
     highest : float, [1/length], optional
         Upper end of the intervals. Default: 20 divided by the largest diameter.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -176,24 +169,6 @@ def structure_factor(
     SceneError
         If the scene has walls, if the file contains only some of the particles, if there are too few frames,
         or if `highest` is below the smallest wave number.
-
-    Notes
-    -----
-    The sums are exact at the wave vectors that the periodic container permits: k = 2 pi (n_x / L_x, ...). The
-    vector k = 0, at which S = N, is excluded. The values are averaged in intervals of |k|, over up to 24
-    vectors in each interval. An interval without vectors is omitted. In a fluid, S(k) tends to the reduced
-    compressibility k_B T d rho / dP at small k, and to 1 at large k. The theoretical curve for equal spheres
-    is the approximation of Verlet and Weis.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.structure_factor(simulation, highest=6.0).estimate.dims
-    ('wave_number',)
     """
     with open_run(source, start) as run:
         require_defined("structure_factor", run.scene)
@@ -211,16 +186,22 @@ def partial_structure_factors(
 ) -> Observable:
     """Measure the Ashcroft-Langreth partial structure factors of a periodic mixture.
 
+    The definition is (N. W. Ashcroft and D. C. Langreth, Phys. Rev. 156, 685 (1967))
+
+        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
+
+    At large k, and for an ideal mixture at any k, the factor is 1 if a and b are the same species and 0 if
+    they are different species. With the number fractions x, the sum of sqrt(x_a x_b) S_ab over all a and b is
+    exactly the `structure_factor`. Wave vectors and errors are the same as in `structure_factor`. The
+    theoretical factors are the approximation of Verlet and Weis for spheres of one size, and the
+    approximation of Percus and Yevick for spheres of several sizes.
+
     Parameters
     ----------
-    source : str, Path, Dataset or Simulation
-        A trajectory (a path or an open trajectory), or a simulation.
     bins : int, default 60
         Number of equal intervals of |k|, as in `structure_factor`.
     highest : float, [1/length], optional
         Upper end of the intervals, as in `structure_factor`.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -232,33 +213,6 @@ def partial_structure_factors(
     SceneError
         Under the conditions of `structure_factor`. Also if the scene has single particles, because these do
         not belong to a species.
-
-    Notes
-    -----
-    The definition is [1]_
-
-        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b),    rho_a(k) = sum over species a of exp(i k.r).
-
-    At large k, and for an ideal mixture at any k, the factor is 1 if a and b are the same species and 0 if
-    they are different species. With the number fractions x, the sum of sqrt(x_a x_b) S_ab over all a and b is
-    exactly the `structure_factor`. Wave vectors and errors are the same as in `structure_factor`. The
-    theoretical factors are the approximation of Verlet and Weis for spheres of one size, and the
-    approximation of Percus and Yevick for spheres of several sizes.
-
-    References
-    ----------
-    .. [1] N. W. Ashcroft and D. C. Langreth, Phys. Rev. 156, 685 (1967).
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> gases = [gp.Species(20, radius, temperature=1.0) for radius in (0.3, 0.5)]
-    >>> scene = gp.Scene(box, gases)
-    >>> simulation = gp.Simulation(scene, seed=1)
-    >>> simulation.advance(40.0)
-    >>> gp.analysis.partial_structure_factors(simulation, highest=6.0).sizes["pair"]
-    3
     """
     with open_run(source, start) as run:
         require_defined("partial_structure_factors", run.scene)
@@ -286,10 +240,9 @@ def _average_products(
     highest: float | None,
     products: Callable[[np.ndarray, np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, dict[str, Any]]:
-    """Average `products` in each of 16 blocks of the run, in intervals of |k|.
-
-    `products` is a function of (frames, waves) that returns an array (T, ..., M). Returns an array (16, ...,
-    wave_number), and the coordinate. Raises SceneError under the conditions of `structure_factor`.
+    """Average `products` in each of 16 blocks of the run, in intervals of |k|. `products` is a function of
+    (frames, waves) that returns an array (T, ..., M). Returns an array (16, ..., wave_number), and the
+    coordinate. Raises SceneError under the conditions of `structure_factor`.
     """
     bins = count_of("bins", bins, least=2)
     lengths = run.scene.container.lengths

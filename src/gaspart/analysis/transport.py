@@ -28,8 +28,8 @@ from gaspart.analysis.paths import unwrap_positions
 from gaspart.analysis.run import Run, Source, open_run
 from gaspart.analysis.statistics import correlated_mean, means_of
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.state.initial import initial_state
 from gaspart.state.state import State, drift_of
 from gaspart.trajectory.amber import INITIAL
@@ -56,10 +56,8 @@ from gaspart.trajectory.correlator import Correlations
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
-    """Measure the thermal conductivity of a mixture from correlations up to the time `lag`.
-
-    Raises SceneError if frames are unevenly spaced, too far apart, or too few, and if the file does not
-    contain all particles.
+    """Measure the thermal conductivity of a mixture from correlations up to the time `lag`. Raises SceneError
+    if frames are unevenly spaced, too far apart, or too few, and if the file does not contain all particles.
     """
     steps = np.diff(run.time)
     if np.ptp(steps) > 1e-6 * steps.mean():
@@ -86,9 +84,8 @@ def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
 
 
 def _sum_displacements(run: Run) -> np.ndarray:
-    """Sum the displacements of each species relative to the centre of mass.
-
-    The shape is (S - 1, T, d), because the sum for the last species follows from the other sums.
+    """Sum the displacements of each species relative to the centre of mass. The shape is (S - 1, T, d),
+    because the sum for the last species follows from the other sums.
     """
     moving, masses = run.moving, run.masses  # raises SceneError if the file lacks particles
     members = [run.species == kind for kind in np.unique(run.species)[:-1]]
@@ -100,12 +97,11 @@ def _sum_displacements(run: Run) -> np.ndarray:
 
 
 def _products(flux: np.ndarray, other_flux: np.ndarray, lags: int) -> np.ndarray:
-    """Compute products of changes of two sets of time-integrated fluxes.
-
-    The integrals have the shapes (A, T, d) and (B, T, d), and the products the shape (A, B, T - 1 - lags).
-    The change of one integral over an interval is multiplied by a sum of changes of the other integral: half
-    of its change over the same interval plus its change over the next `lags` intervals. The result is
-    averaged over both orders of the two integrals and over axes.
+    """Compute products of changes of two sets of time-integrated fluxes. The integrals have the shapes (A, T,
+    d) and (B, T, d), and the products the shape (A, B, T - 1 - lags). The change of one integral over an
+    interval is multiplied by a sum of changes of the other integral: half of its change over the same
+    interval plus its change over the next `lags` intervals. The result is averaged over both orders of the
+    two integrals and over axes.
     """
 
     def half(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -123,14 +119,17 @@ _SLIGHT = 1e-6  # fraction of k_B T: energy of the motion of the whole gas that 
 def shear_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the shear viscosity.
 
+    Between sheared faces (`LeesEdwards`) the result is the response -P_yx / shear_rate instead. It needs no
+    lag and has no curves. The antisymmetric part of the stress is included. This part is zero unless
+    collisions violate the conservation of angular momentum, as in the cells of DSMC. The theoretical value is
+    Enskog's viscosity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -142,13 +141,6 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     SceneError
         If the run has no correlations of the stress, if the lag exceeds their longest lag, if there are fewer
         than 17 frames, or if the shear rate is 0.
-
-    Notes
-    -----
-    Between sheared faces (`LeesEdwards`) the result is the response -P_yx / shear_rate instead. It needs no
-    lag and has no curves. The antisymmetric part of the stress is included. This part is zero unless
-    collisions violate the conservation of angular momentum, as in the cells of DSMC. The theoretical value is
-    Enskog's viscosity.
 
     Examples
     --------
@@ -170,14 +162,15 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
 def bulk_viscosity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the bulk viscosity from fluctuations of the pressure relative to its mean.
 
+    The mean pressure is computed from the run itself, which has the duration T. Therefore the result is too
+    low by about the fraction 2 lag / T. The theoretical value is Enskog's bulk viscosity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -188,21 +181,6 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     ------
     SceneError
         Under the conditions of `shear_viscosity`.
-
-    Notes
-    -----
-    The mean pressure is computed from the run itself, which has the duration T. Therefore the result is too
-    low by about the fraction 2 lag / T. The theoretical value is Enskog's bulk viscosity.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.bulk_viscosity(path, lag=0.5).green_kubo.dims
-    ('lag',)
     """
     with open_run(source, start) as run:
         return _coefficient(run, "bulk_viscosity", "bulk", lag)
@@ -211,14 +189,16 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the thermal conductivity.
 
+    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
+    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
+    theoretical value is Enskog's conductivity.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
         Longest time difference of the correlations that are summed. Default: the longest stored lag.
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -230,22 +210,6 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
     SceneError
         Under the conditions of `shear_viscosity`; also for a polydisperse species, and for single particles
         in a mixture.
-
-    Notes
-    -----
-    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
-    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
-    theoretical value is Enskog's conductivity.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.thermal_conductivity(path, lag=0.5).helfand.dims
-    ('lag',)
     """
     with open_run(source, start) as run:
         if run.scene.alike:
@@ -260,12 +224,13 @@ def thermal_conductivity(source: Source, lag: float | None = None, start: float 
 def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     """Measure the components of the pressure tensor.
 
+    In a sheared gas, velocities are relative to the flow. The theoretical value, for a gas at rest, follows
+    from the equation of state.
+
     Parameters
     ----------
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
-    start : float, [time], optional
-        Frames before this time are discarded. Default: a quarter of the run.
 
     Returns
     -------
@@ -276,21 +241,6 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
     ------
     SceneError
         If the run has no correlations of the stress, or if there are fewer than 17 frames.
-
-    Notes
-    -----
-    In a sheared gas, velocities are relative to the flow. The theoretical value, for a gas at rest, follows
-    from the equation of state.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-    >>> scene = gp.Scene(box, [gp.Species(32, 0.5, temperature=1.0)])
-    >>> stress = gp.Correlations(interval=0.1, lags=10, stress=True)
-    >>> path = gp.run(scene, "event", 1, 40.0, 1.0, "gas.nc", correlations=stress)
-    >>> gp.analysis.pressure_tensor(path).component.values.tolist()
-    ['xx', 'xy', 'yx', 'yy']
     """
     with open_run(source, start, sheared=True) as run:
         require_defined("pressure_tensor", run.scene)
@@ -312,10 +262,9 @@ def pressure_tensor(source: Source, start: float | None = None) -> Observable:
 
 
 def _read_settings(run: Run) -> Correlations:
-    """Return the settings of the stress correlations of a run.
-
-    Raises SceneError if the run has none. Older versions of gaspart stored fluxes that are not relative to
-    the centre of mass. A run of such a version is rejected if the gas moves as a whole.
+    """Return the settings of the stress correlations of a run. Raises SceneError if the run has none. Older
+    versions of gaspart stored fluxes that are not relative to the centre of mass. A run of such a version is
+    rejected if the gas moves as a whole.
     """
     text = run.data.attrs.get("correlations")
     settings = Correlations.from_json(text) if text else None
@@ -359,9 +308,8 @@ def _response(run: Run, lag: float | None) -> Observable:
 
 
 def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observable:
-    """Measure a transport coefficient from the correlations of a flux.
-
-    `name` is the name of the flux in `trajectory.correlator.STRESS`.
+    """Measure a transport coefficient from the correlations of a flux. `name` is the name of the flux in
+    `trajectory.correlator.STRESS`.
     """
     require_defined(public, run.scene)
     settings = _read_settings(run)
@@ -398,9 +346,8 @@ def _lags_until(settings: Correlations, lag: float | None) -> int:
 
 
 def green_kubo(run: Run, name: str) -> np.ndarray:
-    """Compute a transport coefficient from the correlation up to each lag, in each block.
-
-    A block is an interval between frames. Only intervals in which pairs of samples of all lags end are used.
+    """Compute a transport coefficient from the correlation up to each lag, in each block. A block is an
+    interval between frames. Only intervals in which pairs of samples of all lags end are used.
     """
     interval = _read_settings(run).interval
     products, _ = _blocks(run, name)
@@ -423,11 +370,8 @@ def _scale(run: Run, name: str) -> float:
 
 
 def _blocks(run: Run, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the correlation of V J and the squared change of G for each block.
-
-    Both arrays have the shape (B, lags).
-
-    A nonzero mean of the flux is subtracted.
+    """Return the correlation of V J and the squared change of G for each block. Both arrays have the shape
+    (B, lags). A nonzero mean of the flux is subtracted.
     """
     data: xr.Dataset = run.data
     samples = data["correlated_samples"].values

@@ -34,7 +34,7 @@ _COMMANDS = {
     "films": ("view", "films of the scenes of the gallery, such as for slides"),
     "view": ("view", "an interactive page (.html) of a trajectory"),
     "play": ("play", "a page (.html) on which a gas runs in any browser"),
-    "collisions": ("collisions", "run a scene and write a data set of its collisions"),
+    "collisions": ("export", "run a scene and write a data set of its collisions"),
     "export": ("export", "a frame as a state for other programs (.gsd, .data)"),
     "theory": ("theory", "values of theory, with sources"),
     "advise": ("advise", "the cheapest engine and settings for an accuracy"),
@@ -42,7 +42,7 @@ _COMMANDS = {
     "budget": ("archive", "where the time of a finished run of the workflow went, and which length suffices"),
     "archive": ("archive", "a finished run of the workflow as one file to deposit"),
     "verify": ("archive", "digests of an archive, and points simulated again"),
-    "completion": ("completion", "let a shell complete commands, options and names"),
+    "completion": ("arguments", "let a shell complete commands, options and names"),
 }
 """Commands by name: the module, which has a function add_<name>, and the line in the list of commands."""
 _WRITE_FILES = ("new", "resume")  # commands with an option `output` do this
@@ -59,10 +59,8 @@ def lines() -> dict[str, str]:
 
 
 def main(arguments: Sequence[str] | None = None, without_output: bool = False) -> int:
-    """Execute a command line, and return the exit code.
-
-    If `without_output` is True, the standard output is closed. A command that prints its result there then
-    fails.
+    """Execute a command line, and return the exit code. If `without_output` is True, the standard output is
+    closed. A command that prints its result there then fails.
     """
     options: argparse.Namespace | None = None
     try:
@@ -103,9 +101,8 @@ def main(arguments: Sequence[str] | None = None, without_output: bool = False) -
 
 
 def _for_command(error: Exception, options: argparse.Namespace | None) -> str:
-    """Return the text of an error for the given command.
-
-    The text names the file of the scene. It names the option of the command instead of Python's `overwrite`.
+    """Return the text of an error for the given command. The text names the file of the scene. It names the
+    option of the command instead of Python's `overwrite`.
     """
     if (
         isinstance(error, SceneError)
@@ -182,10 +179,8 @@ def _describe_unrecognised(words: list[str], parser: Parser) -> str:
 
 
 def _parser(words: Sequence[str]) -> Parser:
-    """Return the parser of a command line.
-
-    The parser contains only the command at the beginning of the line, or a list of all commands. Only the
-    module of this command is imported; `completion` imports all modules.
+    """Return the parser of a command line. The parser contains only the command at the beginning of the line,
+    or a list of all commands. Only the module of this command is imported; `completion` imports all modules.
     """
     parser = Parser(
         prog="gaspart",

@@ -23,9 +23,8 @@ from gaspart.cli.arguments import (
     real,
     set_command,
 )
-from gaspart.cli.engine_options import one_of
+from gaspart.cli.options import one_of, run_options
 from gaspart.cli.progress import waiting
-from gaspart.cli.stated_run import run_options
 from gaspart.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -191,9 +190,8 @@ def _energy_scatter(plan: Plan, scatter: Scatter) -> list[str]:
 
 
 def _differences(plan: Plan) -> list[str]:
-    """Describe pilot runs whose results differ by more than their error bounds.
-
-    The lines also name the exact engine, whose pilot run is used.
+    """Describe pilot runs whose results differ by more than their error bounds. The lines also name the exact
+    engine, whose pilot run is used.
     """
     lines = []
     for pilot in plan.differing:
@@ -231,9 +229,8 @@ def _components(option: Option) -> str:
 
 
 def _shortfall(plan: Plan) -> str:
-    """Describe what would be required for an accuracy that cannot be reached.
-
-    The reason may be the time budget, the restriction to a single run, or the errors of the engines.
+    """Describe what would be required for an accuracy that cannot be reached. The reason may be the time
+    budget, the restriction to a single run, or the errors of the engines.
     """
     able = [option for option in plan.options if option.bias < plan.accuracy]
     if not able:

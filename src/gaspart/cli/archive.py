@@ -65,8 +65,7 @@ def add_verify(parser: Parser) -> None:
     text = (
         "Recompute the digests of an archive of `gaspart archive`: of its files, and of the data that its "
         "claims are made of. With --rerun points drawn at random are simulated again, and compared bit for "
-        "bit: trajectories of at most an hour, 10 GB and 10 million particles. Nothing is written but to a "
-        "temporary folder and the cache of kernels."
+        "bit. Nothing is written but to a temporary folder and the cache of kernels."
     )
     set_command(parser, _verify, text, _EXAMPLES_OF_VERIFY)
     parser.add_argument(

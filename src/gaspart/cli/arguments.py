@@ -59,9 +59,8 @@ class Parser(argparse.ArgumentParser):
 
 
 def real(**limits: float) -> Callable[[str], float]:
-    """Return a function that converts text to a finite number within limits.
-
-    The limits `above`, `least` and `most` are explained in `gaspart.keys.values.number`.
+    """Return a function that converts text to a finite number within limits. The limits `above`, `least` and
+    `most` are explained in `gaspart.keys.values.number`.
     """
     return _reader(float, "a finite number", limits)
 
@@ -107,10 +106,7 @@ def set_command(
 
 
 def list_names(meanings: dict[str, str]) -> str:
-    """Return names with their meanings, a line for each, in the layout of options.
-
-    Long lines are wrapped.
-    """
+    """Return names with their meanings, a line for each, in the layout of options. Long lines are wrapped."""
     column = 24
     lines = []
     for name, meaning in meanings.items():
@@ -132,19 +128,17 @@ def add_trajectory(parser: argparse.ArgumentParser) -> None:
 
 
 def config_command(command: str) -> Callable:
-    """Return the function of a command that uses a workflow's config or results.
-
-    The function is found by an entry point, because the library does not import the reproduction. Entry
-    points of other packages are ignored.
+    """Return the function of a command that uses a workflow's config or results. The function is found by an
+    entry point, because the library does not import the reproduction. Entry points of other packages are
+    ignored.
     """
     ours = [entry for entry in entry_points_of("gaspart.configs") if entry.value.startswith("gaspart.")]
     return next(entry for entry in ours if entry.name == command).load()
 
 
 def print_line(text: object) -> None:
-    """Print a text as one line (see `visible`).
-
-    Characters that the standard output cannot encode, for example in file names, are escaped.
+    """Print a text as one line (see `visible`). Characters that the standard output cannot encode, for
+    example in file names, are escaped.
     """
     line = visible(text, names=True)
     try:
@@ -184,3 +178,25 @@ def several(kind: Callable[[str], T]) -> Callable[[str], tuple[T, ...]]:
 def alone(numbers: tuple[int, ...]) -> int | tuple[int, ...]:
     """Return the item of a tuple of one number; return a longer tuple unchanged."""
     return numbers[0] if len(numbers) == 1 else numbers
+
+
+# Completion of commands by a shell.
+
+
+SHELLS = ("bash", "zsh", "tcsh")
+_EXAMPLES = """examples:
+  eval "$(gaspart completion bash)"              # in this shell
+  gaspart completion bash >> ~/.bash_completion  # in all later shells"""
+
+
+def add_completion(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
+    text = "Print a script by which a shell completes commands, options and names."
+    set_command(parser, _completion, text, _EXAMPLES)
+    parser.add_argument("shell", choices=SHELLS, metavar="SHELL", help=", ".join(SHELLS))
+
+
+def _completion(options: argparse.Namespace) -> None:
+    import shtab
+
+    print(shtab.complete(options.program, options.shell))

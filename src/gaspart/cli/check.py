@@ -63,10 +63,7 @@ def add_check(parser: Parser) -> None:
 
 
 def _words(text: str) -> str | tuple[str, ...]:
-    """Return a word, or several words separated by commas.
-
-    `Container` rejects invalid words.
-    """
+    """Return a word, or several words separated by commas. `Container` rejects invalid words."""
     words = tuple(text.split(","))
     return words[0] if len(words) == 1 else words
 
@@ -103,10 +100,7 @@ def _is_healthy(options: argparse.Namespace, file: str) -> bool:
 
 
 def _check_frames(file: str, options: argparse.Namespace) -> tuple[str, list]:
-    """Check a trajectory.
-
-    Returns a line about its particles, and the list of checks.
-    """
+    """Check a trajectory. Returns a line about its particles, and the list of checks."""
     from gaspart.inspection.checks import judge, judge_open
     from gaspart.inspection.readers import is_open_run, read_frames
 

@@ -1,4 +1,4 @@
-"""`gaspart export`: states and trajectories for other programs, with remarks on their use."""
+"""`gaspart export` and `gaspart collisions`: files for other programs."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from gaspart.cli.arguments import (
     integer,
     print_line,
     print_note,
+    real,
     set_command,
 )
+from gaspart.cli.progress import waiting
 from gaspart.scene.scene import Scene
 
 _EXAMPLES = """examples:
@@ -56,9 +58,8 @@ _SLAB = "g(r) of discs is theirs times 2 r / L_z, that of a slab"
 
 
 def conventions(scene: Scene, suffix: str) -> str:
-    """Return a remark for users of a scene's file in other programs; "" without a remark.
-
-    The suffix is .nc for a trajectory, or the suffix of an exported file.
+    """Return a remark for users of a scene's file in other programs; "" without a remark. The suffix is .nc
+    for a trajectory, or the suffix of an exported file.
     """
     state = {".nc": _of_trajectory, ".gsd": _of_gsd, ".xyz": _of_xyz, ".data": _of_data}[suffix]
     remarks = "; ".join(state(scene))
@@ -101,3 +102,35 @@ def _of_data(scene: Scene) -> list[str]:
     if not any(scene.container.periodic):
         remarks.append("its temp is larger by N / (N - 1)")
     return remarks
+
+
+_EXAMPLE = """example:
+  gaspart collisions scene.yaml -o met.nc --count 100000 --equilibration 10"""
+
+
+def add_collisions(parser: Parser) -> None:
+    """Add the arguments of the command to its parser."""
+    text = (
+        "Run a scene under the event-driven engine and record its collisions (netCDF): the particles, the "
+        "normal, the speed of approach, the time and path since each particle's last event."
+    )
+    set_command(parser, _collisions, text, _EXAMPLE)
+    add = parser.add_argument
+    add("scene", help="scene file (YAML)")
+    add_output(parser, "data set (netCDF)", "a data set of collisions")
+    add("--count", type=integer(least=1), required=True, metavar="M", help="least number of collisions")
+    text = "time before the first of them; default: 0"
+    add("--equilibration", type=real(least=0.0), default=0.0, metavar="T", help=text)
+    add("--seed", type=integer(least=0), default=0, metavar="N", help="default: 0")
+
+
+def _collisions(options: argparse.Namespace) -> None:
+    from gaspart.analysis.collisions import record_collisions
+
+    scene = Scene.from_file(options.scene)
+    with waiting("recording collisions; the first time, compiling kernels"):
+        data = record_collisions(
+            scene, options.output, options.count, options.seed, options.equilibration, overwrite=options.force
+        )
+    path = data.attrs["mean_free_path"]
+    print_line(f"{options.output}: {data.sizes['collision']} collisions, mean free path {path:.6g}")

@@ -29,7 +29,7 @@ def add_info(parser: Parser) -> None:
 def _info(options: argparse.Namespace) -> None:
     from gaspart.accuracy.scales import scales
     from gaspart.cli.export import conventions
-    from gaspart.cli.stated_run import run_options
+    from gaspart.cli.options import run_options
     from gaspart.inspection.energy import certificate
     from gaspart.trajectory.opening import PARTIAL, check_frames, open_netcdf_file, partial_path
     from gaspart.trajectory.recipe import read_recipe
@@ -93,9 +93,8 @@ def _lines_of(scene: str) -> list[str]:
 
 
 def _measurable(recipe: Recipe) -> list[str]:
-    """Describe the observables of a run, and observables that require another run.
-
-    An observable can be measured if it is defined for the scene, and if the run has stored its data.
+    """Describe the observables of a run, and observables that require another run. An observable can be
+    measured if it is defined for the scene, and if the run has stored its data.
     """
     from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
 
@@ -116,7 +115,7 @@ def _measurable(recipe: Recipe) -> list[str]:
 
 def _request(recipe: Recipe, path: Path, frames: int) -> list[str]:
     """Describe the accuracies at which a run ends, and the accuracies that it has reached."""
-    from gaspart.cli.stated_run import accuracy_lines
+    from gaspart.cli.options import accuracy_lines
 
     if recipe.until is None:
         return []

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.flow import ABOUT
 from gaspart.analysis.frames import until_time
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import remark_of
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
+from gaspart.analysis.run_data import ABOUT
 from gaspart.cli.arguments import (
     Parser,
     UsageError,
@@ -107,17 +107,15 @@ class _Words(tuple):
 
 
 def _is_file(argument: str) -> bool:
-    """Return True if a word with a suffix or a folder names a file.
-
-    Names of observables have neither a suffix nor a folder.
+    """Return True if a word with a suffix or a folder names a file. Names of observables have neither a
+    suffix nor a folder.
     """
     return "." in argument or os.sep in argument
 
 
 def _split_words(options: argparse.Namespace) -> tuple[list[str], list[str]]:
-    """Return the files and the names of observables of a command line.
-
-    Files must precede the names. Raises UsageError.
+    """Return the files and the names of observables of a command line. Files must precede the names. Raises
+    UsageError.
     """
     names = list(options.words)
     files = [options.trajectory]
@@ -161,10 +159,7 @@ def _measure(options: argparse.Namespace) -> None:
 
 
 def _field_of(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the arguments of a field.
-
-    Raises UsageError for arguments without a field.
-    """
+    """Return the arguments of a field. Raises UsageError for arguments without a field."""
     stated = {
         key: getattr(options, key) for key in ("of", "axes", "cells") if getattr(options, key) is not None
     }
@@ -223,7 +218,7 @@ def _of_engine(file: str) -> list[str]:
 def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
     """Return a remark if runs with other seeds have other energies."""
     from gaspart.accuracy.scatter import scatter_of_run
-    from gaspart.cli.stated_run import other_seeds
+    from gaspart.cli.options import other_seeds
 
     if not OBSERVABLES[name].power:
         return {}
@@ -234,10 +229,8 @@ def _of_seeds(trajectory: Any, name: str) -> dict[str, str]:
 def _measure_field(
     trajectory: Any, times: tuple[float | None, float | None], chosen: dict[str, Any]
 ) -> Observable:
-    """Measure a field.
-
-    Raises SceneError for a selection that does not apply to fields, and under the same conditions as
-    `gaspart.analysis.field`.
+    """Measure a field. Raises SceneError for a selection that does not apply to fields, and under the same
+    conditions as `gaspart.analysis.field`.
     """
     from gaspart.analysis.drift import drift_of
     from gaspart.analysis.fields import field
@@ -251,9 +244,8 @@ def _measure_field(
 
 
 def _print_field(observable: Observable) -> None:
-    """Print a field along one axis as a curve, and the range of any other field.
-
-    The line for a range contains the number of cells, the minimum and the maximum.
+    """Print a field along one axis as a curve, and the range of any other field. The line for a range
+    contains the number of cells, the minimum and the maximum.
     """
     along = [str(dim) for dim in observable.estimate.dims if dim != "component"]
     name = str(observable.attrs["quantity"])

@@ -57,10 +57,8 @@ _SCENE = FileKind("a scene file", _is_scene)
 
 @dataclass(frozen=True)
 class Template:
-    """Template of a scene.
-
-    A template consists of a name, the chapter of the gallery, a title, a description, the command that runs
-    the scene, the figure of the workflow (or None), and the text of the file.
+    """Template of a scene. A template consists of a name, the chapter of the gallery, a title, a description,
+    the command that runs the scene, the figure of the workflow (or None), and the text of the file.
     """
 
     name: str
@@ -122,9 +120,8 @@ def _new(options: argparse.Namespace) -> None:
 
 
 def named_command(template: Template, path: Path) -> str:
-    """Return the command that runs the scene of a template.
-
-    The command contains the name of the scene file and the name of the trajectory file.
+    """Return the command that runs the scene of a template. The command contains the name of the scene file
+    and the name of the trajectory file.
     """
     scene, trajectory = shlex.quote(str(path)), shlex.quote(str(path.with_suffix(".nc")))
     command = template.command.replace(f"{template.name}.yaml", scene)

@@ -21,9 +21,8 @@ _PATIENCE = 2.0
 
 @contextmanager
 def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
-    """Show `text` and the elapsed time during a `with` block that lasts over 2 s.
-
-    Yields a function that ends the display, for a block that reports its own progress afterwards.
+    """Show `text` and the elapsed time during a `with` block that lasts over 2 s. Yields a function that ends
+    the display, for a block that reports its own progress afterwards.
     """
     ended = threading.Event()
     if quiet or not sys.stderr.isatty():
@@ -51,9 +50,8 @@ def waiting(text: str, quiet: bool = False) -> Iterator[Callable[[], None]]:
 
 
 def picture_progress() -> Callable[[int, int], None] | None:
-    """Return a function that shows the number of finished pictures and the remaining time.
-
-    Returns None if the output is not a terminal.
+    """Return a function that shows the number of finished pictures and the remaining time. Returns None if
+    the output is not a terminal.
     """
     if not sys.stderr.isatty():
         return None
@@ -70,9 +68,8 @@ def picture_progress() -> Callable[[int, int], None] | None:
 def progress(
     quiet: bool, started: Callable[[], None] | None = None, remark: Callable[[], str] = str
 ) -> Progress | None:
-    """Return a function that shows the progress of a run.
-
-    Returns None if the output is not a terminal, or if `quiet` is True.
+    """Return a function that shows the progress of a run. Returns None if the output is not a terminal, or if
+    `quiet` is True.
 
     started : function that is called at the first report.
     remark : function that returns text for the end of the line.

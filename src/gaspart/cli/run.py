@@ -7,6 +7,7 @@ import math
 import shlex
 import sys
 from collections.abc import Iterable
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +22,8 @@ from gaspart.cli.arguments import (
     set_command,
     several,
 )
-from gaspart.cli.engine_options import add_setting, as_option, engine_settings, one_of
+from gaspart.cli.options import accuracy_lines, add_setting, as_option, engine_settings, one_of
 from gaspart.cli.progress import clear_line, progress, waiting
-from gaspart.cli.stated_run import accuracy_lines
 from gaspart.engines import ENGINES, engine_from_dict
 from gaspart.errors import SceneError
 from gaspart.interruption import set_note
@@ -62,7 +62,7 @@ def add_run(parser: Parser) -> None:
     parser.usage = _USAGE
     add = parser.add_argument
     add("scene", metavar="SCENE", help="scene file (YAML)")
-    add("-o", "--output", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
+    add("-o", "--output", dest="path", required=True, metavar="FILE", help="trajectory (AMBER NetCDF)")
     add("--engine", default="event", metavar="NAME", help=f"{one_of(ENGINES)}; default: event")
     add("--seed", type=several(int), default=(0,), metavar="N[,N...]", help="default: 0")
     text = (
@@ -74,7 +74,8 @@ def add_run(parser: Parser) -> None:
     _add_ends(parser.add_argument_group("when the run ends"))
     _add_contents(parser.add_argument_group("what the file has"))
     files = parser.add_argument_group("files and interruptions")
-    files.add_argument("--force", action="store_true", help="replace a trajectory of another run")
+    text = "replace a trajectory of another run"
+    files.add_argument("--force", dest="overwrite", action="store_true", help=text)
     _add_checkpoints(files)
     text = "for experts: by default chosen for the scene, all but --time-step of step"
     settings = parser.add_argument_group("settings of the engines", text)
@@ -150,34 +151,25 @@ def _run(options: argparse.Namespace) -> None:
     from gaspart.runs.entry import run
 
     scene = Scene.from_file(options.scene)
-    until, correlations = _until(options, scene), _correlations(options.correlations, options.stress)
-    settings, contents = _values(options, engine_settings()), _values(options, OPTIONS)
+    given = {
+        **vars(options),
+        **recipe_fields(_values(options, OPTIONS)),
+        "scene": scene,
+        "seed": alone(options.seed),
+        "until": _until(options, scene),
+        "correlations": _correlations(options.correlations, options.stress),
+    }
     try:
-        engine = engine_from_dict({"name": options.engine, **settings})
+        given["engine"] = engine_from_dict({"name": options.engine, **_values(options, engine_settings())})
     except SceneError as error:
         raise UsageError(as_option(error, options.engine)) from None
     status = _Status()
     with waiting(_PREPARING, options.quiet) as started:
         load_numba(ours=True)
-        path = run(
-            scene,
-            engine,
-            seed=alone(options.seed),
-            duration=options.duration,
-            sample_interval=options.sample_interval,
-            path=options.output,
-            until=until,
-            at_most=options.at_most,
-            correlations=correlations,
-            initial=options.initial,
-            checkpoint_seconds=options.checkpoint_seconds,
-            progress=progress(options.quiet, started, status.remark),
-            examined=status.update,
-            overwrite=options.force,
-            keep_checkpoint=options.keep_checkpoint,
-            replicas=options.replicas,
-            **recipe_fields(contents),
-        )
+        given |= {"progress": progress(options.quiet, started, status.remark), "examined": status.update}
+        # options have the names of the arguments
+        names = signature(run).parameters
+        path = run(**{name: given[name] for name in names if given.get(name) is not None})
     _report(path)
     if not options.quiet:
         print_lines(line for line in scales(scene).lines if not line.startswith("suggested"))
@@ -202,10 +194,8 @@ def _requests(text: str) -> list[tuple[str, float]]:
 
 
 def _until(options: argparse.Namespace, scene: Scene) -> list[Accuracy] | None:
-    """Return the accuracies of --until.
-
-    Raises UsageError for options that exclude or require each other. Without a duration, the message suggests
-    a duration for the scene.
+    """Return the accuracies of --until. Raises UsageError for options that exclude or require each other.
+    Without a duration, the message suggests a duration for the scene.
     """
     if options.until is not None:
         if options.duration is not None:

@@ -14,6 +14,7 @@ from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli.arguments import Parser, list_names, real, set_command, several
 from gaspart.errors import SceneError
 from gaspart.scene.gas import Gas
+from gaspart.theory.mixtures import MIXTURE_THEORIES
 
 _PARTICLE = ("diameter", "temperature", "mass")
 _EQUATIONS = ("exact", "boltzmann", "enskog")
@@ -167,10 +168,7 @@ def _theory(options: argparse.Namespace) -> None:
 
 
 def _of_mixture(options: argparse.Namespace) -> None:
-    """Print a line for each theory and density.
-
-    Properties of pairs have a line for each pair of species.
-    """
+    """Print a line for each theory and density. Properties of pairs have a line for each pair of species."""
     from gaspart import theory
 
     name = _QUANTITIES[options.quantity].mixture
@@ -191,7 +189,7 @@ def _of_mixture(options: argparse.Namespace) -> None:
     state = options.dimension, options.diameters, options.fractions
     of_first = ", of a particle of the first of the pair with all of the second"
     for eta in options.eta:
-        for kind, dimensions in theory.MIXTURE_THEORIES.items():
+        for kind, dimensions in MIXTURE_THEORIES.items():
             if options.dimension in dimensions:
                 value = getattr(theory, name)(eta, *state, theory=kind, **properties)
                 state_text = f"eta = {eta:g}, dimension = {options.dimension}"

@@ -194,9 +194,8 @@ def colour_of(template: Template) -> str:
 
 
 def run_template(template: Template, folder: Path) -> Path:
-    """Write the trajectory of a template to a folder by the command in the template.
-
-    Raises the same errors as the command `gaspart run`.
+    """Write the trajectory of a template to a folder by the command in the template. Raises the same errors
+    as the command `gaspart run`.
     """
     from gaspart.cli import commands
 

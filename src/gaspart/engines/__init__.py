@@ -12,9 +12,9 @@ from gaspart.engines.engine import (
     resolve_engine,
 )
 from gaspart.engines.event.settings import EventDriven
-from gaspart.engines.step.settings import TimeStepped
+from gaspart.engines.step.engine import TimeStepped
 
-from gaspart.engines.dsmc.settings import DSMC  # isort: skip
+from gaspart.engines.dsmc.engine import DSMC  # isort: skip
 
 __all__ = [
     "DSMC",

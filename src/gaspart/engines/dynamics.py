@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from gaspart import __version__
-from gaspart.engines.engine import Engine, engine_to_dict
 from gaspart.engines.features.part import Part, TallyPart, arrays_of
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
@@ -76,17 +75,17 @@ class EventLog:
 
 
 def checkpoint_identity(
-    scene: Scene, engine: Engine, seed: int | tuple[int, ...], initial: State | None = None
+    scene: Scene, settings: Mapping[str, Any], seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
     """Return texts that identify all input of a simulation, by their keys in a checkpoint.
 
+    settings : name of the engine, and its settings that change the results
     initial : initial state; None if it follows from the scene and the seed
     """
-    settings = {key: x for key, x in engine_to_dict(engine).items() if key not in engine.neutral_settings}
     texts = {
         "version": __version__,
         "scene": hashlib.sha256(_text(scene.to_dict()).encode()).hexdigest(),
-        "engine": _text(settings),
+        "engine": _text(dict(settings)),
         "seed": _text(seed),
         "initial state": _digest(initial),
     }
@@ -119,9 +118,8 @@ def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
 
 
 def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint contains all `expected` arrays.
-
-    Each array must have the shape and the kind of data type of the expected array.
+    """Raise SceneError unless a checkpoint contains all `expected` arrays. Each array must have the shape and
+    the kind of data type of the expected array.
     """
     for key, array in expected.items():
         value = parts.get(key)
@@ -174,9 +172,8 @@ class Dynamics(ABC):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the time `until`, but by at most `max_events` events or `max_work` work.
-
-        Events are recorded in `log`. Raises SceneError for a limit that the engine does not support. Raises
+        """Advance to the time `until`, but by at most `max_events` events or `max_work` work. Events are
+        recorded in `log`. Raises SceneError for a limit that the engine does not support. Raises
         SimulationError if the run cannot continue; the state then remains usable.
         """
 
@@ -190,9 +187,8 @@ class Dynamics(ABC):
         return next((part for part in parts if part.name == name), None)
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally in one array.
-
-        Raises KeyError if the tally was not requested.
+        """Return the sums of an optional tally in one array. Raises KeyError if the tally was not
+        requested.
         """
         part = self._tally_part(tally)
         if part is None:
@@ -204,10 +200,9 @@ class Dynamics(ABC):
         return {key: np.array(value) for key, value in self._checkpoint_data().items()}
 
     def restore(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Continue bitwise identically from a checkpoint of the same scene and engine.
-
-        Settings that do not change results may differ. Raises SceneError if an array is missing in the
-        checkpoint; in this case nothing changes.
+        """Continue bitwise identically from a checkpoint of the same scene and engine. Settings that do not
+        change results may differ. Raises SceneError if an array is missing in the checkpoint; in this case
+        nothing changes.
         """
         required = self._required_arrays(checkpoint)
         check_parts(checkpoint, required)
@@ -227,15 +222,13 @@ class Dynamics(ABC):
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return arrays with the shapes that `restore` requires from this checkpoint.
-
-        Raises SceneError for a damaged checkpoint.
+        """Return arrays with the shapes that `restore` requires from this checkpoint. Raises SceneError for a
+        damaged checkpoint.
         """
         return self.checkpoint()
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Compute all data that follow from the restored arrays and numbers of a checkpoint.
-
-        The caller has already restored these arrays and numbers.
+        """Compute all data that follow from the restored arrays and numbers of a checkpoint. The caller has
+        already restored these arrays and numbers.
         """

@@ -62,10 +62,8 @@ class Engine:
 
     @property
     def equation(self) -> str:
-        """Dynamics that the engine simulates: "exact" for hard particles, or a kinetic equation.
-
-        The kinetic equation is "boltzmann" or "enskog". Results of a run are compared with the theory for
-        this equation.
+        """Dynamics that the engine simulates: "exact" for hard particles, or a kinetic equation. The kinetic
+        equation is "boltzmann" or "enskog". Results of a run are compared with the theory for this equation.
         """
         return "exact"
 
@@ -75,10 +73,9 @@ class Engine:
         return None
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> Engine:
-        """Return a copy in which default settings are replaced by values for a scene.
-
-        If `interval` is passed, a time step that the engine chooses divides it into equal steps. Raises
-        SceneError if the settings do not fit the scene.
+        """Return a copy in which default settings are replaced by values for a scene. If `interval` is
+        passed, a time step that the engine chooses divides it into equal steps. Raises SceneError if the
+        settings do not fit the scene.
         """
         return self
 
@@ -112,9 +109,8 @@ class Engine:
         return 0
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features of a scene that this engine does not support.
-
-        The message names the engines that support them.
+        """Raise SceneError for features of a scene that this engine does not support. The message names the
+        engines that support them.
         """
         present = scene.features
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
@@ -133,17 +129,15 @@ class Engine:
             )
 
     def draws(self, scene: Scene) -> bool:
-        """Return True if a run uses random numbers after the start.
-
-        Kinetic equations, thermal faces and the thermostat use random numbers. Without random numbers, all
-        runs that start from the same state are identical, even if their seeds differ.
+        """Return True if a run uses random numbers after the start. Kinetic equations, thermal faces and the
+        thermostat use random numbers. Without random numbers, all runs that start from the same state are
+        identical, even if their seeds differ.
         """
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene.
-
-        The name does not depend on the features of the scene.
+        """Return the name of the compiled kernel variant for a scene. The name does not depend on the
+        features of the scene.
         """
         raise NotImplementedError
 
@@ -167,9 +161,8 @@ class Engine:
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> Dynamics:
-        """Prepare the engine for a scene in an initial state.
-
-        Raises SceneError for features that the engine does not support.
+        """Prepare the engine for a scene in an initial state. Raises SceneError for features that the engine
+        does not support.
 
         seed : seed of thermal walls and kicks
         tallies : optional tallies in addition to the counters of every run; `check_tally` must accept them
@@ -193,10 +186,9 @@ def reference_engine() -> Engine:
 
 
 def resolve_engine(engine: Engine | str | None) -> Engine:
-    """Return the engine that an argument of a user means; the reference engine for None.
-
-    The argument is an engine, or the name of an engine, which means default settings. Raises SceneError for
-    other values, and for the name of an engine that has required settings.
+    """Return the engine that an argument of a user means; the reference engine for None. The argument is an
+    engine, or the name of an engine, which means default settings. Raises SceneError for other values, and
+    for the name of an engine that has required settings.
     """
     if engine is None:
         return reference_engine()
@@ -215,9 +207,8 @@ def required_settings(engine: type[Engine]) -> list[str]:
 
 
 def constructors() -> str:
-    """Return constructor calls of all engines, for messages.
-
-    The calls include all settings that have no default.
+    """Return constructor calls of all engines, for messages. The calls include all settings that have no
+    default.
     """
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()

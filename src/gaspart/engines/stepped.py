@@ -23,10 +23,9 @@ _PLACED = ("slots", "positions", "velocities", "images")
 
 
 class SteppedDynamics(Dynamics):
-    """Running scene under an engine with time steps.
-
-    A *slot* is the place of a particle's data in memory, which may change during a run. A subclass also sets
-    `_parts`, and places the particles into their slots before the first step.
+    """Running scene under an engine with time steps. A *slot* is the place of a particle's data in memory,
+    which may change during a run. A subclass also sets `_parts`, and places the particles into their slots
+    before the first step.
 
     time_step : length of a step
     reference : initial state of the particles
@@ -76,9 +75,8 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
-        """Perform and count the steps up to the step with this number, at least one step.
-
-        Raises SimulationError if the run cannot continue.
+        """Perform and count the steps up to the step with this number, at least one step. Raises
+        SimulationError if the run cannot continue.
         """
 
     @abstractmethod
@@ -87,25 +85,22 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """Return the values of the counters by the names of their fields in `Tally`.
-
-        Time, steps and the energy of faces are not included.
+        """Return the values of the counters by the names of their fields in `Tally`. Time, steps and the
+        energy of faces are not included.
         """
 
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """Energy removed by contacts since the last reset, as terms (K, 2) of a sum.
-
-        The terms are in units that contain `unit_mass`.
+        """Energy removed by contacts since the last reset, as terms (K, 2) of a sum. The terms are in units
+        that contain `unit_mass`.
         """
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """Energy given to each face by particles whose velocities it draws, as terms (2d, 2).
-
-        The unit is the same as for `_loss`.
+        """Energy given to each face by particles whose velocities it draws, as terms (2d, 2). The unit is the
+        same as for `_loss`.
         """
 
     @property
@@ -126,7 +121,6 @@ class SteppedDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """Time at the end of the last completed step."""
         return self._start + self._progress * self.time_step
 
     def advance(
@@ -136,11 +130,9 @@ class SteppedDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Advance to the last step that ends by `until`, with a tolerance of 1e-9 steps.
-
-        Raises SceneError for a time beyond 2^53 steps. Raises it also for a limit or a record of events,
-        which require the event-driven engine. Raises SimulationError if the particles are too fast for a
-        step.
+        """Advance to the last step that ends by `until`, with a tolerance of 1e-9 steps. Raises SceneError
+        for a time beyond 2^53 steps. Raises it also for a limit or a record of events, which require the
+        event-driven engine. Raises SimulationError if the particles are too fast for a step.
         """
         limits = {
             "max_events": max_events,
@@ -163,7 +155,6 @@ class SteppedDynamics(Dynamics):
         self._advance_to(target)
 
     def reset_tally(self) -> None:
-        """Reset all counters."""
         self._lost[:] = self.dissipated, self.exchanged
         for sums in self._sums().values():
             sums[...] = 0
@@ -173,12 +164,10 @@ class SteppedDynamics(Dynamics):
 
     @property
     def dissipated(self) -> float:
-        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return float(self._lost[0]) + net(self._loss, self._heat, -self._given) * self._unit_mass
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         gross = net(self._loss) + float(np.abs(self._heat.sum(axis=1)).sum())
         return float(self._lost[1]) + gross * self._unit_mass + abs(net(self._given)) * self._unit_mass
 
@@ -197,7 +186,6 @@ class SteppedDynamics(Dynamics):
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`."""
         counts: dict[str, Any] = {"steps": self._steps - self._since} | self._counts()
         for part in self._parts:
             counts |= part.counts(self._clock)

@@ -97,10 +97,8 @@ def unknown_word(name: object, candidates: Iterable[str], kind: str = "key") -> 
 
 
 def optional(module: str, extra: str, purpose: str) -> ModuleType:
-    """Import an optional package, which belongs to an `extra` of pyproject.toml.
-
-    If the package is missing, SceneError is raised with the `purpose` of the package and the command that
-    installs it.
+    """Import an optional package, which belongs to an `extra` of pyproject.toml. If the package is missing,
+    SceneError is raised with the `purpose` of the package and the command that installs it.
     """
     try:
         return import_module(module)
@@ -112,10 +110,9 @@ def optional(module: str, extra: str, purpose: str) -> ModuleType:
 
 
 def entry_points_of(group: str) -> list[EntryPoint]:
-    """Return the entry points of a group, in the order of the search path.
-
-    A package whose list of entry points cannot be read is ignored. `importlib.metadata.entry_points` would
-    fail for all packages in this case.
+    """Return the entry points of a group, in the order of the search path. A package whose list of entry
+    points cannot be read is ignored. `importlib.metadata.entry_points` would fail for all packages in this
+    case.
     """
     from importlib.metadata import distributions  # takes 0.02 s
 
@@ -134,19 +131,12 @@ class SimulationError(OneLine, RuntimeError):
     """Violation of an invariant during a run, or a run that cannot continue.
 
     The caller keeps the last valid state.
-
-    Examples
-    --------
-    >>> import gaspart as gp
-    >>> issubclass(gp.SimulationError, RuntimeError)
-    True
     """
 
 
 def short_repr(value: object) -> str:
-    """Format a value as one printable line of at most 120 characters.
-
-    The computing time is limited for values of any size.
+    """Format a value as one printable line of at most 120 characters. The computing time is limited for
+    values of any size.
     """
     return visible(_repr(value, _DEPTH), _LONGEST["value"])
 
@@ -184,11 +174,10 @@ def _join_items(items: Iterable[str], count: int, depth: int) -> str:
 
 
 def visible(text: object, longest: int | None = None, names: bool = False) -> str:
-    """Return a text as one line without characters that a terminal would interpret or hide.
-
-    Line breaks, control characters and formatting characters are escaped, including characters that reverse
-    the writing direction. All printed text passes through this function, because files may contain text from
-    unknown sources.
+    """Return a text as one line without characters that a terminal would interpret or hide. Line breaks,
+    control characters and formatting characters are escaped, including characters that reverse the writing
+    direction. All printed text passes through this function, because files may contain text from unknown
+    sources.
 
     longest : maximum number of characters; the middle of a longer text is omitted.
     names : True to keep bytes of file names that are not UTF-8, except bytes that are control characters by

@@ -88,9 +88,7 @@ def _allowed_overlap(frames: Frames, tolerance: float | None) -> float:
     diameter = 2.0 * float(frames.radii.min())
     coarse = min(max(TOUCH, 4.0 * frames.resolution / diameter), COARSEST)
     step = frames.engine.quantum if frames.engine else None
-    if (
-        step and frames.velocities is not None
-    ):  # a pair that a step has pushed together separates in later steps
+    if step and frames.velocities is not None:  # a pair that a step pushed together separates in later ones
         coarse = max(coarse, 2.0 * math.sqrt(float(frames.squares.largest.max())) * step / diameter)
     return coarse if tolerance is None else tolerance
 
@@ -121,10 +119,9 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 
 
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
-    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance.
-
-    Pairs are counted by distance, which takes a tenth of the time of `deepest_overlap`. If there are no
-    bounds, return (0, inf).
+    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance. Pairs
+    are counted by distance, which takes a tenth of the time of `deepest_overlap`. If there are no bounds,
+    return (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf
@@ -166,10 +163,9 @@ def _inside(frames: Frames, tolerance: float | None) -> Check:
 
 
 def _pressure(frames: Frames) -> Check:
-    """Check Z against the equation of state, with a correction for the finite number of particles.
-
-    Z is computed from collisions if the file counts them, otherwise from the pair distribution at contact.
-    Two conditions select the frames that are used. Since the start, particles must have moved by the distance
+    """Check Z against the equation of state, with a correction for the finite number of particles. Z is
+    computed from collisions if the file counts them, otherwise from the pair distribution at contact. Two
+    conditions select the frames that are used. Since the start, particles must have moved by the distance
     between neighbours, so that no lattice order remains (this order decays as exp(-k^2 <r^2> / 2d)). Between
     two frames, particles must have moved across the shells in which pairs are counted.
     """
@@ -272,10 +268,9 @@ _CHANGING = "particles come and go: its theory is of those that stay"
 
 
 def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Check]]:
-    """Check a trajectory with open faces.
-
-    Returns a line that states the numbers of particles, and the checks of positions, of the balances of
-    particles and energy, and of flights. `tolerance` is the allowed overlap, as a fraction of a diameter.
+    """Check a trajectory with open faces. Returns a line that states the numbers of particles, and the checks
+    of positions, of the balances of particles and energy, and of flights. `tolerance` is the allowed overlap,
+    as a fraction of a diameter.
     """
     recipe = read_recipe(path)
     scene = recipe.scene
@@ -287,7 +282,7 @@ def judge_open(path: Path, tolerance: float | None = None) -> tuple[str, list[Ch
         if "keep" not in data.attrs:
             frames = _frames(recipe, data)
             checks = [*judge_places(frames, tolerance), *checks, judge_flights(frames)]
-    unknown = "speed law", "pressure Z", "diffusion coefficient D"
+    unknown = SPEEDS[0], _PRESSURE, _DIFFUSION
     return title, [*checks, *(Check(name, None, _CHANGING) for name in unknown)]
 
 

@@ -27,9 +27,8 @@ _DIGITS = 12  # decimal places at which decimal and binary numbers differ
 
 
 class Flights(NamedTuple):
-    """Number of flights without a collision, and their largest relative error.
-
-    The frame is the one at which the flight with the largest error ends.
+    """Number of flights without a collision, and their largest relative error. The frame is the one at which
+    the flight with the largest error ends.
     """
 
     number: int
@@ -118,10 +117,9 @@ def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
 
 
 def _steady(name: str, changes: np.ndarray, allowed: float, isolated: bool) -> Check:
-    """Check that a quantity is constant from frame to frame.
-
-    The `changes` (T - 1,) are relative to the total of all particles. If the quantity changes in most frames,
-    it must be conserved only if the file excludes forces on the particles.
+    """Check that a quantity is constant from frame to frame. The `changes` (T - 1,) are relative to the total
+    of all particles. If the quantity changes in most frames, it must be conserved only if the file excludes
+    forces on the particles.
     """
     worst = int(np.argmax(changes))
     text = f"changes by {changes[worst]:.2g} of it at most, before frame {worst + 1} (up to {allowed:.1g})"
@@ -178,10 +176,8 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 
 
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
-    """Return True if all frames have the same velocities, but displacements contradict them.
-
-    If `doubtful` is True, equal velocities count as copies unless the times are known and all particles move
-    by them.
+    """Return True if all frames have the same velocities, but displacements contradict them. If `doubtful` is
+    True, equal velocities count as copies unless the times are known and all particles move by them.
     """
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"
@@ -208,11 +204,10 @@ def _reordered_frame(frames: Frames) -> int | None:
 
 
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if frame n + 1 contains velocities of frame n in other rows.
-
-    These velocities must occur more often in other rows than in their own rows. Velocities that several
-    particles share do not count. In a head-on collision, two equal particles exchange their velocities. If
-    the times are known, positions distinguish this case.
+    """Return True if frame n + 1 contains velocities of frame n in other rows. These velocities must occur
+    more often in other rows than in their own rows. Velocities that several particles share do not count. In
+    a head-on collision, two equal particles exchange their velocities. If the times are known, positions
+    distinguish this case.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]
@@ -234,9 +229,8 @@ def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _predicted_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if most particles of a frame are at positions predicted for other rows.
-
-    The particles are in frame n + 1; the predictions are for rows of frame n.
+    """Return True if most particles of a frame are at positions predicted for other rows. The particles are
+    in frame n + 1; the predictions are for rows of frame n.
     """
     if frames.time is None or frames.count < 3:
         return False

@@ -26,12 +26,9 @@ _SAME = 1e-6
 
 @dataclass
 class Contents:
-    """Fields of T frames of N particles, as read from a file.
-
-    Missing fields are set to None.
+    """Fields of T frames of N particles, as read from a file; None if missing. Others are as in `Frames`.
 
     positions, velocities : (T, N, 2 or 3), as stored.
-    time : (T,).
     steps : (T,), step numbers that --time-step multiplies.
     radii, masses : (N,) or (T, N).
     ids, species : (T, N), ids of particles, and species; both identify particles.
@@ -39,17 +36,8 @@ class Contents:
     boundary : (3,), boundary of each axis as a word.
     centred : True if the origin is in the middle of the container.
     flat : True if the particles move in two dimensions.
-    plain : True if only elastic contacts move the particles, according to the file.
-    isolated : True if the file declares that its scene has no further features.
-    part : True if the scene has more particles than the file.
-    sampled : True if particles may overlap.
-    engine, scene : scene of a gaspart file.
-    counted : the file, if it counts exact collisions.
-    resolution, time_resolution : resolution of a coordinate and of a time in their data types.
-    velocities_from_first : reason to doubt velocities that are the same in all frames as in frame
-    0.
-    no_velocities : reason why velocities are missing.
-    note : where sizes were found, if the format does not define it.
+    time_resolution : resolution of a time in its data type.
+    velocities_from_first : reason to doubt velocities that are the same in all frames as in frame 0.
     """
 
     positions: Vectors
@@ -81,9 +69,8 @@ class Contents:
 
 @dataclass(frozen=True)
 class Overrides:
-    """Values passed by the user, which take precedence over the file; see `readers.read_frames`.
-
-    If `last` is True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
+    """Values passed by the user, which take precedence over the file; see `readers.read_frames`. If `last` is
+    True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
     """
 
     radius: float | None = None
@@ -95,10 +82,7 @@ class Overrides:
 
 
 def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Frames:
-    """Complete the contents of a file with the values passed by the user.
-
-    Raises SceneError for missing, invalid or contradictory values.
-    """
+    """Complete the contents of a file with the values passed by the user; raise SceneError."""
     shape = contents.positions.shape
     if len(shape) != 3 or shape[0] < 1 or shape[1] < 1:
         raise SceneError("file", path, "needs at least one frame of at least one particle")
@@ -149,8 +133,7 @@ def _wrapped(
 ) -> Rows:
     """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
 
-    The corner and the side lengths are (1, d) or (T, d). Coordinates are wrapped one axis at a time, because
-    numpy broadcasts an axis of length 3 slowly.
+    Coordinates are wrapped one axis at a time, because numpy broadcasts an axis of length 3 slowly.
     """
 
     def wrap(frame: np.ndarray, n: int) -> np.ndarray:
@@ -194,6 +177,14 @@ def _require_finite(name: str, values: Vectors, path: str) -> None:
             raise SceneError("file", path, f"has {name} {rule}")
 
 
+def require_same_count(counts: list[int], path: Path) -> None:
+    """Raise SceneError if the number of particles differs between frames."""
+    for n, count in enumerate(counts):
+        if count != counts[0]:
+            rule = f"has {count} particles in frame {n} and {counts[0]} in frame 0"
+            raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+
+
 def sort_by_id(contents: Contents, path: str) -> None:
     """Sort the particles of every frame by their ids; reject frames with different ids."""
     if contents.ids is None:
@@ -222,11 +213,10 @@ def sort_by_id(contents: Contents, path: str) -> None:
 
 
 def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int:
-    """Return the number of dimensions, 2 or 3.
-
-    If the file does not state the dimension, it follows from the motion along z. Particles that keep the same
-    z are discs, unless the user passes three side lengths. In a single frame without velocities, particles
-    are discs only if the container has no height or is less than two diameters high.
+    """Return the number of dimensions, 2 or 3. If the file does not state the dimension, it follows from the
+    motion along z. Particles that keep the same z are discs, unless the user passes three side lengths. In a
+    single frame without velocities, particles are discs only if the container has no height or is less than
+    two diameters high.
     """
     positions, velocities = contents.positions, contents.velocities
     if positions.shape[2] == 2:
@@ -249,10 +239,7 @@ def _dimension(contents: Contents, overrides: Overrides, diameter: float) -> int
 
 
 def _container(contents: Contents, overrides: Overrides, d: int, path: str) -> tuple[np.ndarray, Container]:
-    """Return the side lengths, (1, d) or (T, d), and the container of the first frame.
-
-    The side lengths are (T, d) if they change.
-    """
+    """Return the side lengths, (1, d) or (T, d) if they change, and the container of the first frame."""
     stated = None if contents.lengths is None else np.asarray(contents.lengths, dtype=float)[:, :d]
     if overrides.lengths is not None:
         if len(overrides.lengths) < d:
@@ -295,11 +282,9 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
 
 
 def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
-    """Return the times (T,), or None if the file contains none.
-
-    Equal times in all frames count as missing, because the field was never set. Times that are evenly spaced
-    within their resolution are replaced by evenly spaced times. The reason is that late times deviate more in
-    single precision, or with few digits.
+    """Return the times (T,), or None if the file contains none. Equal times in all frames count as missing,
+    because the field was never set. Times that are evenly spaced within their resolution are replaced by
+    evenly spaced times. The reason is that late times deviate more in single precision, or with few digits.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution
@@ -320,10 +305,7 @@ def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | 
 
 
 def _per_frame(values: np.ndarray, tolerance: float = 0.0) -> np.ndarray:
-    """Return (1, ...) if all frames have the same values, otherwise (T, ...).
-
-    The values are (T, n), or (n,) for all frames.
-    """
+    """Return (1, ...) if all frames have the same values, (T, n) or (n,), otherwise (T, ...)."""
     values = np.atleast_2d(values)
     if np.abs(values - values[:1]).max(initial=0.0) <= tolerance * np.abs(values).max(initial=0.0):
         return values[:1]

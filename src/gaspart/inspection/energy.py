@@ -10,8 +10,8 @@ import xarray as xr
 from gaspart.analysis.fluxes import particle_numbers
 from gaspart.analysis.statistics import autocorrelation_time
 from gaspart.errors import SceneError
-from gaspart.scene.faces import Sticky, Well
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Sticky, Well
 from gaspart.state.initial import places_in_wells, well_energies
 from gaspart.state.insertion import per_particle
 from gaspart.trajectory.opening import open_netcdf_file
@@ -22,10 +22,9 @@ _FRAMES = 64  # maximum number of values in memory
 
 
 def energy_line(scene: Scene, data: xr.Dataset) -> str:
-    """Return a line that states the energy drift of a run.
-
-    In every scene the total energy minus the energy that contacts, faces and kicks exchange with the
-    particles is conserved. Its drift is relative to the largest kinetic energy.
+    """Return a line that states the energy drift of a run. In every scene the total energy minus the energy
+    that contacts, faces and kicks exchange with the particles is conserved. Its drift is relative to the
+    largest kinetic energy.
     """
     kinetic = data["kinetic_energy"].values
     try:
@@ -44,10 +43,9 @@ def energy_line(scene: Scene, data: xr.Dataset) -> str:
 
 
 def conserved_energy(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Compute the conserved energy (T,) of the frames, up to a constant.
-
-    The conserved energy is the sum of the kinetic, vibrational, potential and exchanged energy. Raises
-    SceneError if the file does not contain the energy.
+    """Compute the conserved energy (T,) of the frames, up to a constant. The conserved energy is the sum of
+    the kinetic, vibrational, potential and exchanged energy. Raises SceneError if the file does not contain
+    the energy.
     """
     energy = data["kinetic_energy"].values + _removed_energy(data)
     if "vibrations" in data:
@@ -74,9 +72,8 @@ def _removed_energy(data: xr.Dataset) -> np.ndarray:
 
 
 def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Compute the energy (T,) of all particles under gravity and in wells.
-
-    If there are displacements, the energy under gravity is relative to time 0.
+    """Compute the energy (T,) of all particles under gravity and in wells. If there are displacements, the
+    energy under gravity is relative to time 0.
     """
     positions = data["coordinates"].values.astype(float)
     energy = np.zeros(len(positions))
@@ -129,10 +126,9 @@ def _contacts(series: dict) -> str:
 
 
 def _samples(scene: Scene, series: dict) -> str:
-    """Return a line that states the number of independent values of the pressure.
-
-    This number is the number of intervals between frames divided by twice their correlation time, or the
-    number of collisions if this is smaller.
+    """Return a line that states the number of independent values of the pressure. This number is the number
+    of intervals between frames divided by twice their correlation time, or the number of collisions if this
+    is smaller.
     """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)

@@ -15,15 +15,14 @@ import numpy as np
 from gaspart.analysis.flow import sum_squares
 from gaspart.engines import Engine
 from gaspart.scene.gas import Gas
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 
 
 class Rows:
-    """Vectors (T, N, d) whose frames are read, or computed, when they are used.
-
-    Indexed by frames like an array: a number returns the vectors (N, d) of a frame, a slice or numbers return
-    `Rows`. The last two frames are kept, because most checks compare consecutive frames.
+    """Vectors (T, N, d) whose frames are read, or computed, when they are used. Indexed by frames like an
+    array: a number returns the vectors (N, d) of a frame, a slice or numbers return `Rows`. The last two
+    frames are kept, because most checks compare consecutive frames.
     """
 
     def __init__(self, shape: tuple[int, int, int], read: Callable[[int], np.ndarray]) -> None:
@@ -174,10 +173,9 @@ class Frames:
 
     @cached_property
     def gas(self) -> Gas | None:
-        """Plain gas that these particles form, as far as the file describes it, or None.
-
-        The mass is 1, the temperature is the mean of `temperatures` (NaN without velocities). None if the
-        particles differ, or if forces other than elastic contacts act on them.
+        """Plain gas that these particles form, as far as the file describes it, or None. The mass is 1, the
+        temperature is the mean of `temperatures` (NaN without velocities). None if the particles differ, or
+        if forces other than elastic contacts act on them.
         """
         if not self.plain or self.diameter is None:
             return None
@@ -207,9 +205,8 @@ class Frames:
 
     @property
     def temperatures(self) -> np.ndarray:
-        """Temperature k_B T of each frame for particles of mass 1, shape (T,).
-
-        The temperature is 0 for a single particle that has no motion relative to the mean.
+        """Temperature k_B T of each frame for particles of mass 1, shape (T,). The temperature is 0 for a
+        single particle that has no motion relative to the mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(self.squares.peculiar / max(freedom, 1))
@@ -226,10 +223,9 @@ class Frames:
         return apart
 
     def paths(self, part: slice = slice(None)) -> Iterator[np.ndarray]:
-        """Yield the displacements (N, d) of all or some particles since the first frame, in each frame.
-
-        The displacement is relative to the centre of mass along axes on which particles exchange momentum
-        only with each other.
+        """Yield the displacements (N, d) of all or some particles since the first frame, in each frame. The
+        displacement is relative to the centre of mass along axes on which particles exchange momentum only
+        with each other.
         """
         moved = np.zeros(self.positions[0][part].shape)
         yield moved

@@ -97,25 +97,19 @@ def _contents(path: Path, overrides: Overrides) -> Contents:
 
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
-    """Convert any error in reading a file to SceneError.
-
-    Values that are not finite are rejected later.
-    """
+    """Convert any error in reading a file to SceneError; values that are not finite are rejected later."""
     try:
         with np.errstate(all="ignore"):
             yield
     except SceneError:
         raise
-    except (OSError, RuntimeError, ValueError, LookupError, TypeError, MemoryError) as error:
+    except (OSError, RuntimeError, ArithmeticError, ValueError, LookupError, TypeError, MemoryError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError("file", str(path), f"cannot be read: {reason}") from None
 
 
 def _require_memory(path: Path) -> None:
-    """Raise SceneError for a file whose frames exceed the memory, for example a sparse file.
-
-    Raises OSError if the file does not exist.
-    """
+    """Raise SceneError for a file whose frames exceed the memory."""
     with open_regular(path) as file:
         size = os.fstat(file.fileno()).st_size
     available, required = memory(), COPIES * size
@@ -139,6 +133,9 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
 
     The state is the last frame of the file.
 
+    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
+    scene. If radii and masses then differ from the scene, particles are assigned by their radii and masses.
+
     Parameters
     ----------
     path : str or Path
@@ -159,12 +156,6 @@ def read_state(path: str | Path, scene: Scene, seed: int | tuple[int, ...] = 0) 
     SceneError
         If the file has another number of particles, other sizes or masses, or another container; if
         `gaspart check` cannot read it; or if `Simulation` rejects the state.
-
-    Notes
-    -----
-    The particles of the file are sorted by their ids, if there are any. This order should be the order of the
-    scene. If radii and masses then differ from the scene, particles are assigned by
-    their radii and masses.
 
     Examples
     --------
@@ -217,10 +208,7 @@ def _state_of_page(path: Path, scene: Scene) -> State:
 
 
 def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> np.ndarray:
-    """Return values (N, d) from the values (N, 2 or 3) of a frame.
-
-    Discs that are not in a plane are rejected, and so are spheres in a plane.
-    """
+    """Return values (N, d) from the values (N, 2 or 3) of a frame; reject others than of the scene."""
     d, stated = scene.dimension, values.shape[1]
     if stated < d:
         raise SceneError("file", str(path), f"has {name} in {stated} dimensions, and the scene has {d}")
@@ -232,9 +220,8 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """Return the lower corner (d,) of the container.
-
-    A file contains the part of the container up to the piston, which is at its side when a run begins.
+    """Return the lower corner (d,) of the container. A file contains the part of the container up to the
+    piston, which is at its side when a run begins.
     """
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
@@ -249,10 +236,7 @@ def _origin(contents: Contents, scene: Scene) -> np.ndarray:
 
 
 def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
-    """Raise SceneError for a container with other side lengths.
-
-    Side lengths between walls may be unknown (0), and sides up to a piston may be shorter.
-    """
+    """Raise SceneError for other sides; between walls they may be unknown (0), at a piston shorter."""
     if contents.flat is not None and contents.flat != (scene.dimension == 2):
         has = "two" if contents.flat else "three"
         raise SceneError("file", str(path), f"has {has} dimensions, and the scene {scene.dimension}")
@@ -268,10 +252,7 @@ def _check_container(contents: Contents, scene: Scene, path: Path) -> None:
 
 
 def _order(contents: Contents, scene: Scene, path: Path) -> np.ndarray:
-    """Return the particle number (N,) in a file for each particle of the scene.
-
-    Particles are identified by their radii and masses in the file.
-    """
+    """Return the number (N,) in a file of each particle of the scene, by radii and masses."""
     pairs: list[tuple[str, np.ndarray, np.ndarray]] = []
     for name, stated in (("radius", contents.radii), ("mass", contents.masses)):
         if stated is not None:

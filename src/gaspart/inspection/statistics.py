@@ -25,8 +25,10 @@ from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
 from gaspart.scene.gas import Gas
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import EXACT, collision_rate
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST
+from gaspart.theory.speeds import kurtosis_scatter
 
 UNEVEN = 20.0
 """Power of a long wave above which a gas is not uniform. It is 1 on average for independent particles, and
@@ -36,12 +38,11 @@ _CHANGED = 0.05  # minimum change of a velocity that counts, in root-mean-square
 
 
 def count_collisions(frames: Frames) -> np.ndarray:
-    """Compute a lower bound of the collisions (T,) per particle since the first frame.
-
-    Between consecutive frames the bound is the smaller of two numbers. The first is -ln of the fraction of
-    particles whose velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the
-    correlation of velocities, which decays as exp(-2s/d) in s collisions. The first number is too large with
-    a thermostat, which slightly changes all velocities; the second is too large with walls.
+    """Compute a lower bound of the collisions (T,) per particle since the first frame. Between consecutive
+    frames the bound is the smaller of two numbers. The first is -ln of the fraction of particles whose
+    velocity has not changed (except by reflections at walls). The second is -(d/2) ln of the correlation of
+    velocities, which decays as exp(-2s/d) in s collisions. The first number is too large with a thermostat,
+    which slightly changes all velocities; the second is too large with walls.
     """
     velocities = frames.velocities
     assert velocities is not None, "requires velocities"
@@ -62,10 +63,8 @@ def count_collisions(frames: Frames) -> np.ndarray:
 
 
 def independent(times: np.ndarray, rate: float) -> float:
-    """Compute the number of independent samples in a mean over frames at `times`.
-
-    If the correlation of a property decays as exp(-rate t), the number is 1 / mean of exp(-rate |t_i - t_j|)
-    over all pairs i, j.
+    """Compute the number of independent samples in a mean over frames at `times`. If the correlation of a
+    property decays as exp(-rate t), the number is 1 / mean of exp(-rate |t_i - t_j|) over all pairs i, j.
     """
     total, before = 0.0, 0.0  # sum of the correlations of earlier frames with this one
     for decay in np.exp(-rate * np.diff(times, prepend=times[0])):
@@ -76,10 +75,9 @@ def independent(times: np.ndarray, rate: float) -> float:
 
 
 def decorrelated_frames(paths: Iterable[np.ndarray], distance: float, first: int = 0) -> list[int]:
-    """Return frames from `first` on, between which particles have moved by `distance`.
-
-    The root mean square displacement between consecutive returned frames is at least this distance. `paths`
-    are the displacements (N, d) since frame 0 in each frame.
+    """Return frames from `first` on, between which particles have moved by `distance`. The root mean square
+    displacement between consecutive returned frames is at least this distance. `paths` are the displacements
+    (N, d) since frame 0 in each frame.
     """
     chosen, before = list[int](), np.zeros(0)
     for n, moved in enumerate(paths):
@@ -90,9 +88,8 @@ def decorrelated_frames(paths: Iterable[np.ndarray], distance: float, first: int
 
 
 def first_relaxed_frame(frames: Frames) -> int | None:
-    """Return the first frame in which particles have moved by the distance between neighbours, or None.
-
-    The displacement is the root mean square over the particles.
+    """Return the first frame in which particles have moved by the distance between neighbours, or None. The
+    displacement is the root mean square over the particles.
     """
     moved = (sum_squares(path).mean() for path in frames.paths())
     return next((n for n, square in enumerate(moved) if square >= frames.spacing**2), None)
@@ -108,10 +105,9 @@ def describe_motion(frames: Frames) -> str:
 
 
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
-    """Compute the largest power of the two longest density waves along each axis.
-
-    The power is computed for the particle density in frame n. If `of` (N,) is passed, it is computed for the
-    density of this property minus the mean of the property. The power is about 1 if the density is uniform.
+    """Compute the largest power of the two longest density waves along each axis. The power is computed for
+    the particle density in frame n. If `of` (N,) is passed, it is computed for the density of this property
+    minus the mean of the property. The power is about 1 if the density is uniform.
     """
     weights = np.ones(frames.count) if of is None else of - of.mean()
     total = float((weights**2).sum())
@@ -161,10 +157,9 @@ def why_not_speeds(frames: Frames) -> str | None:
 
 
 def judge_speeds(frames: Frames) -> list[Check]:
-    """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames.
-
-    The number of collisions is `count_collisions`. A deviation of the kurtosis decays with the slowest rate
-    of the homogeneous Boltzmann equation. The initial deviation is computed from the first frame. The test of
+    """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames. The number
+    of collisions is `count_collisions`. A deviation of the kurtosis decays with the slowest rate of the
+    homogeneous Boltzmann equation. The initial deviation is computed from the first frame. The test of
     Maxwell's distribution also requires relaxed positions. For spheres at a packing fraction of 0.3 that were
     inserted at random with Maxwellian velocities, the kurtosis deviates for some time: by -0.0044(5) after 6
     collisions per particle, -0.0029(5) after 10 and -0.0003(13) after 15. After 15 collisions the spheres
@@ -176,7 +171,7 @@ def judge_speeds(frames: Frames) -> list[Check]:
         return [Check(name, None, reason) for name in names]
     series, expected = frames.squares.kurtosis, _expected_kurtosis(frames)
     clock, rate = count_collisions(frames), theory.KURTOSIS_RELAXATION_RATE[frames.dimension]
-    scatter, skewness = theory.kurtosis_scatter(frames.dimension, frames.count)
+    scatter, skewness = kurtosis_scatter(frames.dimension, frames.count)
     excess = max(abs(series[0] - expected), scatter)
     relaxation = math.log(excess / (RESIDUE * scatter)) / rate
     if clock[-1] < relaxation:
@@ -218,10 +213,8 @@ def _law(frames: Frames) -> Check:
 
 
 def _expected_kurtosis(frames: Frames) -> float:
-    """Compute the equilibrium kurtosis at fixed energy (exact).
-
-    The momentum along periodic axes is zero. As in `theory.kurtosis`, except that <v_k^2>
-    along a periodic axis is reduced by the factor 1 - 1/N.
+    """Compute the equilibrium kurtosis at fixed energy (exact). The momentum along periodic axes is zero. As
+    in `theory.kurtosis`, except that <v_k^2> along a periodic axis is reduced by the factor 1 - 1/N.
     """
     parts = np.where(frames.periodic, 1.0 - 1.0 / frames.count, 1.0)
     freedoms = frames.count * parts.sum()
@@ -229,10 +222,9 @@ def _expected_kurtosis(frames: Frames) -> float:
 
 
 def _normal(deviation: float, skewness: float) -> float:
-    """Return the normal deviation with the same probability as a deviation of a skewed distribution.
-
-    Above the mean the gamma distribution is used (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684
-    (1931)). Below the mean, where the tail is shorter, the deviation is unchanged.
+    """Return the normal deviation with the same probability as a deviation of a skewed distribution. Above
+    the mean the gamma distribution is used (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684 (1931)).
+    Below the mean, where the tail is shorter, the deviation is unchanged.
     """
     if deviation <= 0.0:
         return deviation
@@ -275,10 +267,9 @@ def contact_values(frames: Frames) -> np.ndarray:
 
 
 def has_too_few_contacts(frames: Frames) -> bool:
-    """Return True if there are too few pairs near contact for an error of `contact_values`.
-
-    The number of pairs in a shell has a Poisson distribution about the mean of an ideal gas. If this mean is
-    small, the average over frames has a skewed distribution. Without any pair, the scatter is 0.
+    """Return True if there are too few pairs near contact for an error of `contact_values`. The number of
+    pairs in a shell has a Poisson distribution about the mean of an ideal gas. If this mean is small, the
+    average over frames has a skewed distribution. Without any pair, the scatter is 0.
     """
     _, coefficients, pairs = _contact_fit(frames)
     variance, third = (len(frames.positions) * (coefficients**k @ pairs) for k in (2, 3))
@@ -314,16 +305,15 @@ _NUMBERS = 2_000_000  # numbers of the paths that are in memory at once
 
 
 def why_not(frames: Frames) -> str | None:
-    """Return the reason why D cannot be measured from a trajectory, or None.
-
-    The particles must be equal and have velocities.
+    """Return the reason why D cannot be measured from a trajectory, or None. The particles must be equal and
+    have velocities.
     """
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
         return "needs times (--time-step) and a periodic container"
     cubic = np.ptp(frames.lengths) <= 1e-6 * frames.lengths[0]
-    if not cubic or frames.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+    if not cubic or frames.packing_fraction > ERPENBECK_WOOD_HIGHEST:
         return "needs a fluid in a cube"
     if diffusion_in_cube(_gas(frames), float(frames.lengths[0]), frames.engine, frames.scene) is None:
         return "no theory states it in so short a cube, whose images order the fluid"
@@ -345,12 +335,11 @@ def groups_of(frames: Frames) -> int:
 
 
 def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
-    """Measure D from the first slope of the mean-squared displacement that no longer changes.
-
-    `gaspart measure` uses the same method. Returns D and the first and last lag of the slope, in collisions
-    of a particle. Raises SceneError if the slope still changes at the longest lags. For zero total momentum
-    of N particles, D is (N - 1) / N of its value without this condition. The result is corrected for this
-    factor. The error is the scatter of groups of particles.
+    """Measure D from the first slope of the mean-squared displacement that no longer changes. `gaspart
+    measure` uses the same method. Returns D and the first and last lag of the slope, in collisions of a
+    particle. Raises SceneError if the slope still changes at the longest lags. For zero total momentum of N
+    particles, D is (N - 1) / N of its value without this condition. The result is corrected for this factor.
+    The error is the scatter of groups of particles.
     """
     length, n = len(frames.positions), frames.count
     lags = _lags(frames)
@@ -372,9 +361,8 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
 
 
 def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
-    """Return the theoretical D in this cube, its uncertainty and its source.
-
-    The values are for the equation of the engine, if the file names an engine.
+    """Return the theoretical D in this cube, its uncertainty and its source. The values are for the equation
+    of the engine, if the file names an engine.
     """
     gas, engine, scene = _gas(frames), frames.engine, frames.scene
     prediction = diffusion_in_cube(gas, float(frames.lengths[0]), engine, scene, window)

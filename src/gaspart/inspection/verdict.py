@@ -16,11 +16,9 @@ exceeds it.
 
 @dataclass(frozen=True)
 class Check:
-    """Result of one check: passed or failed, and the reason.
+    """Result of one check, passed or not, or None if it could not be made, and the reason.
 
-    If the check could not be made, `passed` has the value None. If `acts` is True, the check found that
-    forces other
-    than elastic contacts act on the particles.
+    If `acts` is True, forces other than elastic contacts act on the particles.
     """
 
     name: str

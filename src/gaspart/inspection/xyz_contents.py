@@ -14,16 +14,16 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
-from gaspart.inspection.contents import Contents, Overrides
+from gaspart.inspection.contents import Contents, Overrides, require_same_count
 
 _PAIR = re.compile(
     r"""(?<![^\s="'{}\[\],])([^\s="'{}\[\],]++)\s*+=\s*+"""
     r"""("[^"]*"|'[^']*'|\{[^}]{0,999}\}|\[.{0,999}?\](?=\s|$)|\S+)"""
 )
 """Pattern of a key with its value, whose time is proportional to the length of the text."""
-_EXPONENT = re.compile(r"[eEdD]\S*")
+_EXPONENT = re.compile(r"[eE]\S*")
 _NO_SIGNS = str.maketrans("", "", "+-.")
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _NAMES = {
     "pos": ("pos", "positions"),
     "velo": ("velo", "vel", "velocity", "velocities"),
@@ -40,13 +40,13 @@ _NAMES = {
 """Lower-case names of columns under which programs store each field."""
 _FIELDS = {name: field for field, names in _NAMES.items() for name in names}
 _PLAIN = {"species": (0, 1), "pos": (1, 3)}
+_SIZES = {"lattice": "sides from the second line", "radius": "radii from the fifth column"}
 _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last frame.
-
-    Raises SceneError for contents that cannot be checked, and ValueError for other text.
+    """Read all frames, or the last frame. Raises SceneError for contents that cannot be checked, and
+    ValueError for other text.
     """
     kinds: dict[str, int] = {}  # a number for each species name
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
@@ -59,6 +59,7 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
     reason = None if overrides.last else _drop_velocities([part for _, part in parts])
     _add_origins([part for _, part in parts])
     first = parts[0][1]
+    require_same_count([len(part["pos"]) for _, part in parts], path)
     for n, part in parts:
         _require_same_fields(n, part, first, path)
     # fields are joined one after the other, and their parts are freed
@@ -81,14 +82,11 @@ def read_xyz(path: Path, overrides: Overrides) -> Contents:
         resolution=_resolution(columns["pos"], int(columns["digits"].max())),
         time_resolution=float(columns["time_digit"].max()) if "time" in columns else 0.0,
         no_velocities=reason,
-        note=_note(columns) if columns["plain"].all() else "",
+        # the format of a plain file does not define sizes
+        note=" and ".join(text for name, text in _SIZES.items() if name in columns)
+        if columns["plain"].all()
+        else "",
     )
-
-
-def _note(columns: dict[str, np.ndarray]) -> str:
-    """Return where a plain file states sizes, which its format does not define."""
-    places = {"lattice": "sides from the second line", "radius": "radii from the fifth column"}
-    return " and ".join(text for name, text in places.items() if name in columns)
 
 
 def _drop_velocities(parts: list[dict]) -> str | None:
@@ -103,10 +101,7 @@ def _drop_velocities(parts: list[dict]) -> str | None:
 
 
 def _add_origins(parts: list[dict]) -> None:
-    """Set the missing lower corner of a container to 0 if other frames have a corner.
-
-    OVITO omits a corner at 0.
-    """
+    """Set a missing lower corner to 0 if other frames have one, because OVITO omits a corner at 0."""
     stated = [part["origin"] for part in parts if "origin" in part]
     if stated:
         for part in parts:
@@ -114,10 +109,7 @@ def _add_origins(parts: list[dict]) -> None:
 
 
 def _require_same_fields(n: int, part: dict, first: dict, path: Path) -> None:
-    """Raise SceneError if a frame has other numbers, fields or boundaries than the first."""
-    if len(part["pos"]) != len(first["pos"]):
-        rule = f"has {len(part['pos'])} particles in frame {n} and {len(first['pos'])} in frame 0"
-        raise SceneError("file", str(path), f"{rule}: a changing number cannot be checked")
+    """Raise SceneError if a frame has other fields or boundaries than the first."""
     if part.keys() != first.keys():
         name = min(part.keys() ^ first.keys())
         raise SceneError("file", str(path), f"states {name} in some frames only, not in 0 or not in {n}")
@@ -136,14 +128,8 @@ def _velocities(columns: dict[str, np.ndarray], path: Path) -> np.ndarray | None
 
 
 def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[str]]]]:
-    """Yield the comment of each frame, and the words of its lines.
-
-    Blank lines before a frame are skipped.
-    """
-    frame = 0
-    for line in lines:
-        if not line.strip():
-            continue
+    """Yield the comment of each frame, and the words of its lines; blank lines before it are skipped."""
+    for frame, line in enumerate(line for line in lines if line.strip()):
         count = int(line)
         comment = next(lines, "")
         rows = [row.split() for row in islice(lines, max(count, 0))]
@@ -152,16 +138,14 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
         if len(rows) < count or count < 1:
             raise SceneError("file", str(path), f"is truncated: frame {frame} has {len(rows)} particles")
         yield comment, rows
-        frame += 1
 
 
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
-    """Return the fields of frame n by the names of `_NAMES`, including its comment's.
+    """Return the fields of frame n by the names of `_NAMES`, and those of its comment.
 
-    Fields that the user passes are not read. `kinds` contains the numbers of species names; new names are
-    added to it.
+    Fields that the user passes are not read. New names of species are added to `kinds`.
     """
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _plain_columns(rows)
@@ -185,7 +169,7 @@ def _read_frame(
         elif name == "move_mask":
             fields["fixed"] = np.array([any(part.lower() in _FALSE for part in token) for token in tokens])
         else:
-            values = _numbers(tokens)
+            values = np.array(tokens, dtype=float)
             fields[name] = values if name in ("pos", "velo", "momenta", "forces") else values[:, 0]
     first, count = named["pos"]
     fields["digits"] = _most_digits(token for row in rows for token in row[first : first + count])
@@ -200,7 +184,7 @@ def _plain_columns(rows: list[list[str]]) -> dict[str, tuple[int, int]]:
     """Return the columns of a plain file; positive numbers in a fifth and last column are radii."""
     fifth = [row[4] for row in rows if len(row) == 5]
     radii = len(fifth) == len(rows) and all(_NUMBER.fullmatch(text) for text in fifth)
-    if radii and (_numbers([fifth]) > 0.0).all():
+    if radii and (np.array(fifth, dtype=float) > 0.0).all():
         return {**_PLAIN, "radius": (4, 1)}
     return _PLAIN
 
@@ -210,14 +194,11 @@ def _plain_sides(comment: str) -> str:
     tokens = _words(comment)
     if len(tokens) not in (2, 3) or not all(_NUMBER.fullmatch(token) for token in tokens):
         return ""
-    return " ".join([*tokens, "0"][:3]) if (_numbers([tokens]) > 0.0).all() else ""
+    return " ".join([*tokens, "0"][:3]) if all(float(token) > 0.0 for token in tokens) else ""
 
 
 def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
-    """Return the first column and the number of columns of each field that is used.
-
-    The key "" has the total number of columns.
-    """
+    """Return first column and number of columns of each field that is used; under "" the total number."""
     parts, first, columns = properties.split(":"), 0, {}
     if len(parts) % 3 or not all(width.isdigit() and int(width) > 0 for width in parts[2::3]):
         raise SceneError("Properties", properties, "must be of the form name:type:columns:...", str(path))
@@ -231,19 +212,8 @@ def _columns(properties: str, path: Path) -> dict[str, tuple[int, int]]:
     return {**columns, "": (first, 0)}
 
 
-def _numbers(tokens: list[list[str]]) -> np.ndarray:
-    """Convert words to numbers, including Fortran exponents; raise ValueError."""
-    try:
-        return np.array(tokens, dtype=float)
-    except ValueError:
-        return np.array([[re.sub("[dD]", "e", token) for token in row] for row in tokens], dtype=float)
-
-
 def _of_comment(pairs: dict[str, str], dimension: int, overrides: Overrides, path: Path) -> dict:
-    """Return the container, boundary and time of a frame from its comment.
-
-    Fields that the user passes are not read. `dimension` is the number of columns of the positions.
-    """
+    """Return the container, boundary and time of a frame from its comment, without those of the user."""
     fields: dict = {}
     if "lattice" in pairs and (overrides.lengths is None or len(_words(pairs["lattice"])) in (3, 4, 9)):
         cell = _vector(pairs, "lattice", (3, 4, 9), "--lengths X,Y[,Z]", path)
@@ -276,16 +246,12 @@ def _words(text: str) -> list[str]:
 
 
 def _vector(pairs: dict[str, str], key: str, sizes: tuple[int, ...], option: str, path: Path) -> np.ndarray:
-    """Return the numbers of a value; their count must be one of `sizes`.
-
-    The error message names an `option` that can replace the value.
-    """
+    """Return the numbers of a value; if their count is none of `sizes`, the error names an `option`."""
     tokens = _words(pairs[key])
     if len(tokens) not in sizes or not all(_NUMBER.fullmatch(token) for token in tokens):
-        *some, last = map(str, dict.fromkeys(sizes))
-        rule = f"must be {', '.join(some)}{' or ' if some else ''}{last} numbers; give {option}"
+        rule = f"must be {' or '.join(map(str, dict.fromkeys(sizes)))} numbers; give {option}"
         raise SceneError(key, pairs[key], rule, str(path))
-    return _numbers([tokens])[0]
+    return np.array(tokens, dtype=float)
 
 
 def _most_digits(tokens: Iterable[str]) -> int:
@@ -297,10 +263,9 @@ def _most_digits(tokens: Iterable[str]) -> int:
 
 
 def _resolution(positions: np.ndarray, digits: int) -> float:
-    """Return the resolution of a printed coordinate, one unit of the last printed digit.
-
-    The largest coordinate has `digits` digits. Numbers such as 0 or 2.5, whose trailing zeros were omitted,
-    do not reduce the resolution of the others.
+    """Return the resolution of a printed coordinate, one unit of the last printed digit. The largest
+    coordinate has `digits` digits. Numbers such as 0 or 2.5, whose trailing zeros were omitted, do not reduce
+    the resolution of the others.
     """
     largest = float(np.abs(positions).max())
     if not 0.0 < largest < math.inf:

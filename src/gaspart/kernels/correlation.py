@@ -25,9 +25,8 @@ def add_velocity_products(earlier, now, used, sums):
 
 @kernel
 def add_displacement_products(earlier, now, used, sums):
-    """Add v(0).v(t) and the products with displacements to three rows of sums (3, S).
-
-    The products with displacements are |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)).
+    """Add v(0).v(t) and the products with displacements to three rows of sums (3, S). The products with
+    displacements are |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)).
 
     earlier : (2, K, S), velocities and positions of S earlier samples
     now : (2, K), present velocities and positions
@@ -43,11 +42,9 @@ def add_displacement_products(earlier, now, used, sums):
 
 @inner_helper
 def shear_components(sums, first, d, components, filled):
-    """Compute the shear components of the symmetric part of a tensor.
-
-    There are (d - 1)(d + 2) / 2 such components; in an isotropic fluid they fluctuate equally. The tensor
-    begins at index `first` of the sums, and the components at index `filled`. Returns the index after the
-    last component.
+    """Compute the shear components of the symmetric part of a tensor. There are (d - 1)(d + 2) / 2 such
+    components; in an isotropic fluid they fluctuate equally. The tensor begins at index `first` of the sums,
+    and the components at index `filled`. Returns the index after the last component.
     """
     for a in range(d):
         for b in range(a + 1, d):
@@ -86,10 +83,8 @@ def flux_components(sums, dimension, components):
 
 @kernel
 def add_flux_products(earlier, now, groups, used, sums):
-    """Add the products of fluxes for the first `used` earlier samples.
-
-    The products J(0) J(t), (G(t) - G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) are added to sums (groups, 4,
-    S).
+    """Add the products of fluxes for the first `used` earlier samples. The products J(0) J(t), (G(t) -
+    G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) are added to sums (groups, 4, S).
 
     earlier : (2, K, S), fluxes J and their integrals G of S earlier samples
     now : (2, K), present fluxes and integrals

@@ -37,9 +37,8 @@ class Placed(NamedTuple):
 
 
 class PeriodicBoxes(NamedTuple):
-    """Boxes (see `state.boxes.Boxes`), and the periods (d,) of the container.
-
-    For a nonperiodic axis, the period exceeds every distance.
+    """Boxes (see `state.boxes.Boxes`), and the periods (d,) of the container. For a nonperiodic axis, the
+    period exceeds every distance.
     """
 
     periods: tuple[float, ...]
@@ -243,10 +242,9 @@ def enter(placed, i, block, n):
 
 @kernel
 def place(draws, placed, boxes, block, task, oversized, walls):
-    """Test the `draws` (M, d) in [0, 1) as positions for the particles of a task.
-
-    A position is free if no placed particle is closer than the sum of the radii. Returns (next particle to
-    place, its failed attempts so far, number of draws used).
+    """Test the `draws` (M, d) in [0, 1) as positions for the particles of a task. A position is free if no
+    placed particle is closer than the sum of the radii. Returns (next particle to place, its failed attempts
+    so far, number of draws used).
 
     oversized : (K,), placed particles that may reach beyond neighbouring boxes
     walls : (M,), interior walls that must not be too close (see `obstacles`), or None

@@ -51,9 +51,8 @@ def fetch_two(typingctx, array, index):
 
 @intrinsic
 def fetch_numbered(typingctx, array, numbers, first, mask):
-    """Prefetch `TOGETHER` rows of an array; another array contains their numbers.
-
-    The numbers are 32-bit words, starting at numbers[first]. Only the bits of a mask count.
+    """Prefetch `TOGETHER` rows of an array; another array contains their numbers. The numbers are 32-bit
+    words, starting at numbers[first]. Only the bits of a mask count.
     """
 
     def generate(context, builder, signature, arguments):

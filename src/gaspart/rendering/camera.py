@@ -37,9 +37,8 @@ class Camera:
     light: np.ndarray
 
     def pixels_per_length(self, point: np.ndarray, width: int) -> float:
-        """Return the pixels per length at a point (3,), in a picture `width` pixels wide.
-
-        The length is measured across the view.
+        """Return the pixels per length at a point (3,), in a picture `width` pixels wide. The length is
+        measured across the view.
         """
         return 0.5 * width / (self.half_width * float((point - self.eye) @ self.forward))
 
@@ -57,10 +56,8 @@ def camera_for(
     direction: tuple[float, float] = CAMERA,
     reach: float = 0.0,
 ) -> Camera:
-    """Return the camera with which a container just fills a picture.
-
-    The container has `lengths` (3,); objects within `reach` around it are included. The direction is
-    (azimuth, elevation).
+    """Return the camera with which a container just fills a picture. The container has `lengths` (3,);
+    objects within `reach` around it are included. The direction is (azimuth, elevation).
     """
     azimuth, elevation = np.radians(direction)
     outward = np.array(

@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from gaspart.accuracy.scales import scales
-from gaspart.scene.faces import FACES, Piston, Surface, Thermal
+from gaspart.scene.faces import Piston
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES, Surface, Thermal
 
 _WEIGHTS = 8.0
 """Largest gravity: energy of a fall through the container, in units of m v^2 of a particle."""
@@ -152,9 +153,7 @@ class Controls:
         return "".join(sorted({*self.constant, *"".join(flags)}))
 
     def scene_for(self, settings: dict[str, Any], scene: Scene) -> Scene:
-        """Return a scene with values of controls.
-
-        Other controls have the values of the scene of the page.
+        """Return a scene with values of controls. Other controls have the values of the scene of the page.
 
         scene : the scene of the page, or this scene with another number of particles
         """

@@ -16,9 +16,8 @@ _SHADE = (0.88, 0.88, 0.88)
 
 
 def scale_of(lengths: np.ndarray, size: tuple[int, int]) -> tuple[float, np.ndarray]:
-    """Return the pixels per length of a container, and the pixel (2,) of its corner.
-
-    The container of `lengths` (2,) is in the middle of a picture of `size` (W, H).
+    """Return the pixels per length of a container, and the pixel (2,) of its corner. The container of
+    `lengths` (2,) is in the middle of a picture of `size` (W, H).
     """
     width, height = size
     margin = max(2.0, _MARGIN * min(size))
@@ -41,10 +40,7 @@ class Canvas:
         return np.column_stack([pixels[:, 0], self._height - pixels[:, 1]])
 
     def discs(self, positions: np.ndarray, radii: np.ndarray, colours: np.ndarray) -> None:
-        """Draw discs, later discs over earlier ones.
-
-        The radius is at least half a pixel.
-        """
+        """Draw discs, later discs over earlier ones. The radius is at least half a pixel."""
         draw_discs(self.image, self._pixels(positions), np.maximum(self.scale * radii, 0.5), colours)
 
     def cut(self, periodic: Sequence[bool]) -> None:

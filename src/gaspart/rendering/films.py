@@ -17,7 +17,7 @@ from gaspart.keys.values import count_of, number
 from gaspart.rendering.frames import Film, open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, Labels, colours_of, legend_of, time_format
 from gaspart.rendering.pictures import SIZE, checked_camera, checked_size, picture, pixels_per_length
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -134,9 +134,8 @@ def film(
 
 
 def poster(source: str | Path, path: str | Path) -> None:
-    """Write the middle picture of an MP4 film as a JPEG file.
-
-    A page shows this picture until the film plays.
+    """Write the middle picture of an MP4 film as a JPEG file. A page shows this picture until the
+    film plays.
     """
     from imageio_ffmpeg import count_frames_and_secs, read_frames
     from PIL import Image
@@ -161,10 +160,7 @@ def _report_progress(
 
 
 def _part(source: xr.Dataset, start: float | None, stop: float | None, every: int) -> xr.Dataset:
-    """Return every `every`-th frame between two times.
-
-    Raises SceneError if there is no frame.
-    """
+    """Return every `every`-th frame between two times. Raises SceneError if there is no frame."""
     time = source["time"].values
     first = -np.inf if start is None else number("start", start, "must be a finite number")
     last = np.inf if stop is None else number("stop", stop, "must be a finite number")
@@ -181,10 +177,7 @@ def _check_arguments(
     trail: int | None,
     camera: tuple[float, float] | None,
 ) -> tuple[float, float]:
-    """Return the direction of the camera.
-
-    Raises SceneError if no picture could be drawn.
-    """
+    """Return the direction of the camera. Raises SceneError if no picture could be drawn."""
     if trajectory.sizes["frame"] == 0:
         raise SceneError("frame", 0, "the trajectory has no frame yet")
     first = particles_of(trajectory, 0)
@@ -238,7 +231,6 @@ def pieces(path: list[np.ndarray], lengths: np.ndarray) -> list[np.ndarray]:
 
 def _gif(scratch: Path, pictures: Iterator[np.ndarray], size: tuple[int, int], rate: float) -> None:
     """Write each picture when it is drawn: the part that differs from the picture before, with its palette.
-
     Pillow's own films are written at the end, with all pictures in memory.
     """
     from PIL import Image, ImageChops

@@ -42,9 +42,8 @@ LARGEST_FILM = 50_000_000
 
 
 class Picture(np.ndarray):
-    """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture.
-
-    Slices and results of arithmetic that are not pictures are shown as arrays.
+    """Array of pixels, uint8 (H, W, 3), that a notebook shows as a picture. Slices and results of arithmetic
+    that are not pictures are shown as arrays.
     """
 
     def _repr_png_(self) -> bytes | None:
@@ -98,6 +97,10 @@ def render(
 ) -> Picture:
     """Draw a frame of a trajectory, a simulation, a state or a scene.
 
+    Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
+    are drawn from above. At periodic faces they are cut, and the other part is drawn at the opposite side.
+    Interior walls of a state are not drawn. The same particles give the same pixels.
+
     Parameters
     ----------
     source : str, Path, Dataset, Simulation, State or Scene
@@ -128,12 +131,6 @@ def render(
     SceneError
         If the frame does not exist, the size or the camera is impossible, the colouring is unknown, or the
         particles of a scene do not fit.
-
-    Notes
-    -----
-    Spheres are drawn in perspective, with light and shadow, over the floor of the container (z = 0). Discs
-    are drawn from above. At periodic faces they are cut, and the other part is drawn at the opposite side.
-    Interior walls of a state are not drawn. The same particles give the same pixels.
 
     Examples
     --------
@@ -252,9 +249,8 @@ def _place(piston: np.ndarray | None) -> float | None:
 
 
 def _walls(scene: Scene, time: float, piston: float | np.ndarray | None) -> np.ndarray:
-    """Return the segments (M, 2, d) of walls, sides of plates, and moving faces.
-
-    `piston` is the position of a piston along its axis, if there is one.
+    """Return the segments (M, 2, d) of walls, sides of plates, and moving faces. `piston` is the position of
+    a piston along its axis, if there is one.
     """
     segments: list[tuple] = []
     moving = scene.moving_wall

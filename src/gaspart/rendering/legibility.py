@@ -5,11 +5,15 @@ Legends must not cover data. Texts must not overlap or leave the canvas.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import combinations
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from gaspart.files import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,10 +51,9 @@ _PASSES = 5
 
 
 def place_legends(figure: Figure) -> None:
-    """Move each legend that covers data to a free position.
-
-    The position is in the panel if possible. Otherwise the vertical axis is extended, or the legend is placed
-    above the panel. Afterwards the layout of the figure is fixed.
+    """Move each legend that covers data to a free position. The position is in the panel if possible.
+    Otherwise the vertical axis is extended, or the legend is placed above the panel. Afterwards the layout of
+    the figure is fixed.
     """
     layout = figure.get_layout_engine()
     assert layout
@@ -96,9 +99,8 @@ def _text_points(text: Text) -> np.ndarray:
 
 
 def _extend_axis(axis: Axes, data: np.ndarray, box: Bbox, free: float) -> bool:
-    """Return True if the vertical axis was extended so that the legend fits at the top.
-
-    `free` is the width in pixels of the panel that is not below the legend.
+    """Return True if the vertical axis was extended so that the legend fits at the top. `free` is the width
+    in pixels of the panel that is not below the legend.
     """
     legend, frame = axis.get_legend(), axis.bbox
     assert legend
@@ -135,9 +137,8 @@ def _inside_panel(axis: Axes, positions: np.ndarray) -> np.ndarray:
 
 
 def _marks(axis: Axes, lines: bool) -> np.ndarray:
-    """Return the positions (n, 2) in pixels of a panel's points and error bars.
-
-    If `lines` is True, points along curves are included. Guide lines across the whole panel are not data.
+    """Return the positions (n, 2) in pixels of a panel's points and error bars. If `lines` is True, points
+    along curves are included. Guide lines across the whole panel are not data.
     """
     from matplotlib.collections import LineCollection
 
@@ -173,10 +174,8 @@ def _along(positions: np.ndarray) -> np.ndarray:
 
 
 def flaws(figure: Figure) -> list[str]:
-    """Return the flaws of a saved figure, a sentence each.
-
-    Flaws are: text that overlaps other text or leaves the canvas, a legend on data, and text in a panel on a
-    point.
+    """Return the flaws of a saved figure, a sentence each. Flaws are: text that overlaps other text or leaves
+    the canvas, a legend on data, and text in a panel on a point.
     """
     from matplotlib.text import Text
 
@@ -241,3 +240,63 @@ def _ticks(axis: Axis) -> Iterator[tuple[object, bool]]:
 def _smaller(box: Bbox) -> Bbox:
     """Return a rectangle without its outermost pixels, which letters do not reach."""
     return box.padded(-2.0)
+
+
+# Key picture of a figure: one panel, drawn for a small place such as a gallery.
+
+
+_SIZE, _DOTS = (3.2, 2.14), 150
+"""Width and height in inches, and dots per inch: lettering of 8 points is 17 of the 321 pixels high."""
+_LETTERS = 20
+"""Mean number of letters of the entries of a legend up to which two fit beside each other."""
+_PANEL_LETTER = re.compile(r"^\([a-z]\)\s*")
+
+
+def save_key_picture(figure: Figure, number: int | None, path: str | Path) -> None:
+    """Reduce a finished figure to one of its panels, and write it. Renders stay whole, as does a figure
+    without a number.
+    """
+    if number is not None and figure.axes[number].axison:
+        _keep(figure, figure.axes[number])
+    with whole_file(path) as partial:
+        figure.savefig(partial, format="png", dpi=_DOTS, metadata={"Software": None})
+
+
+def _keep(figure: Figure, panel: Axes) -> None:
+    """Give a panel, with what lies on it, the size of a key picture."""
+    for other in figure.axes:
+        if other is not panel and panel.get_shared_x_axes().joined(panel, other) and not panel.get_xlabel():
+            panel.set_xlabel(other.get_xlabel())
+    for other in list(figure.axes):
+        if other is not panel and other.get_subplotspec() != panel.get_subplotspec():
+            other.remove()
+    panel.tick_params(labelbottom=True)
+    panel.set_title(_PANEL_LETTER.sub("", panel.get_title(loc="left")), loc="left", pad=3.0)
+    figure.set_size_inches(*_SIZE)
+    whole = figure.add_gridspec(1, 1)[0]
+    for kept in figure.axes:
+        kept.set_subplotspec(whole)
+    for legend in list(figure.legends):  # as wide as the whole figure was
+        handles = [handle for handle in legend.legend_handles if handle is not None]
+        texts = [text.get_text() for text in legend.get_texts()]
+        legend.remove()
+        narrow = sum(map(len, texts)) < _LETTERS * len(texts)
+        figure.legend(handles, texts, ncols=2 if narrow else 1, loc="outside upper center")
+    figure.set_layout_engine("constrained")
+    place_legends(figure)
+    canvas = figure.bbox.padded(1.0)
+    for label in (panel.xaxis.label, panel.yaxis.label):
+        box = label.get_window_extent()
+        if not (canvas.contains(*box.min) and canvas.contains(*box.max)):
+            label.set_text(_two_lines(label.get_text()))
+            figure.set_layout_engine("constrained")
+            place_legends(figure)
+
+
+def _two_lines(text: str) -> str:
+    """Return a text with a line break at the space nearest to its middle, outside of formulas."""
+    spaces = [n for n, letter in enumerate(text) if letter == " " and text.count("$", 0, n) % 2 == 0]
+    if not spaces:
+        return text
+    middle = min(spaces, key=lambda n: abs(2 * n - len(text)))
+    return f"{text[:middle]}\n{text[middle + 1 :]}"

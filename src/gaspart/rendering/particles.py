@@ -57,9 +57,8 @@ class DrawnParticles:
 
     @property
     def reach(self) -> float:
-        """Maximum distance by which particles may extend beyond the container.
-
-        This distance is the radius of the largest particle that extends beyond the container.
+        """Maximum distance by which particles may extend beyond the container. This distance is the radius of
+        the largest particle that extends beyond the container.
         """
         positions, radii = self.positions, self.radii[:, None]
         out = (np.maximum(radii - positions, positions + radii - self.lengths) > 1e-9 * self.lengths).any(
@@ -75,10 +74,8 @@ class DrawnParticles:
 
 @dataclass(frozen=True)
 class Legend:
-    """Meaning of the colours of a picture.
-
-    The legend has a title, colours (M, 3), and texts. Each colour has a text; a continuous scale has a text
-    at each end.
+    """Meaning of the colours of a picture. The legend has a title, colours (M, 3), and texts. Each colour has
+    a text; a continuous scale has a text at each end.
     """
 
     title: str
@@ -108,9 +105,8 @@ def legend_of(
 
 
 def _differences(particles: DrawnParticles, used: np.ndarray) -> tuple[str, tuple[str, ...]]:
-    """Return the properties in which these species differ, with their values in each species.
-
-    If a species has several values, the indices of the species are returned instead.
+    """Return the properties in which these species differ, with their values in each species. If a species
+    has several values, the indices of the species are returned instead.
     """
     titles, columns = [], []
     for title, values in (("radius", particles.radii), ("mass", particles.masses)):
@@ -147,11 +143,10 @@ def _fastest(particles: DrawnParticles, fastest: float | None) -> float:
 def colours_of(
     particles: DrawnParticles, colour: str | np.ndarray, fastest: float | None = None
 ) -> np.ndarray:
-    """Return the colours (N, 3) of particles: red, green and blue from 0 to 1.
-
-    `colour` is "speed", "species" or an array (N, 3). By speed, particles are dark at rest, and bright at the
-    speed `fastest` and above; fixed particles are grey. The default of `fastest` is `FASTEST`
-    root-mean-square speeds. Raises SceneError for another `colour`.
+    """Return the colours (N, 3) of particles: red, green and blue from 0 to 1. `colour` is "speed", "species"
+    or an array (N, 3). By speed, particles are dark at rest, and bright at the speed `fastest` and above;
+    fixed particles are grey. The default of `fastest` is `FASTEST` root-mean-square speeds. Raises SceneError
+    for another `colour`.
     """
     if isinstance(colour, str):
         if colour not in COLOURINGS:
@@ -196,9 +191,8 @@ def round_length(longest: float) -> float:
 
 
 def time_format(times: np.ndarray) -> str:
-    """Return the format for the times of a film; all have the same number of decimals.
-
-    The number of decimals is as large as necessary, and at most three.
+    """Return the format for the times of a film; all have the same number of decimals. The number of decimals
+    is as large as necessary, and at most three.
 
     >>> time_format([0.0, 0.25, 0.5]), time_format([0.0, 1e-9])
     ('.2f', '.4g')
@@ -253,9 +247,8 @@ class Labels:
 
     @cached_property
     def lines(self) -> list[str]:
-        """Parameters in lines that are no wider than the picture.
-
-        They are left out if they take more than half of the picture.
+        """Parameters in lines that are no wider than the picture. They are left out if they take more than
+        half of the picture.
         """
         lines: list[str] = []
         for text in self.parameters:
@@ -274,9 +267,8 @@ class Labels:
 
     @cached_property
     def rows(self) -> list[list[DrawnSurface]]:
-        """Surfaces in rows that are no wider than the picture.
-
-        They are left out if they take more than half of the picture.
+        """Surfaces in rows that are no wider than the picture. They are left out if they take more than half
+        of the picture.
         """
         rows: list[list[DrawnSurface]] = []
         free = 0.0

@@ -20,10 +20,7 @@ LARGEST_SIDE = 20_000
 
 
 def checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    """Return a valid size (W, H).
-
-    Raises SceneError for other values.
-    """
+    """Return a valid size (W, H). Raises SceneError for other values."""
     if not isinstance(size, (tuple, list)) or len(size) != 2:
         raise SceneError("size", size, "must be a width and a height in pixels")
     for side in size:
@@ -33,9 +30,8 @@ def checked_size(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def checked_camera(camera: tuple[float, float] | None, dimension: int) -> tuple[float, float]:
-    """Return azimuth and elevation in degrees, with a default for None.
-
-    Raises SceneError for other values.
+    """Return azimuth and elevation in degrees, with a default for None. Raises SceneError for other
+    values.
     """
     if camera is None:
         return CAMERA
@@ -133,9 +129,8 @@ def _plane(
 
 
 def _images(particles: DrawnParticles) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices (M,) of the drawn discs, and the shifts (M, d) of their images.
-
-    First are all discs, then the periodic images of discs that cross a periodic face.
+    """Return the indices (M,) of the drawn discs, and the shifts (M, d) of their images. First are all discs,
+    then the periodic images of discs that cross a periodic face.
     """
     radii, lengths = particles.radii[:, None], particles.lengths
     steps = [(0, -1, 1) if periodic else (0,) for periodic in particles.periodic[: particles.dimension]]

@@ -22,11 +22,11 @@ from gaspart.errors import SceneError
 from gaspart.kernels.compile.cache import load_numba
 from gaspart.kernels.compile.webassembly import modules
 from gaspart.rendering.controls import RULES, Controls
-from gaspart.rendering.particles import FASTEST
+from gaspart.rendering.particles import FASTEST, FIXED
 from gaspart.rendering.view import View, page_of
-from gaspart.scene.face_checks import piston_end
-from gaspart.scene.faces import FACES
+from gaspart.scene.boundaries import piston_end
 from gaspart.scene.scene import Scene, require_scene
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import Wall
 from gaspart.state.given import state_at_time_zero
 from gaspart.state.initial import initial_state
@@ -43,8 +43,10 @@ _PUSHED, _SPEED = 0.4, 0.25
 """Smallest distance of a piston from the opposite side, divided by the length, and its speed, divided by the
 thermal speed.
 """
-_TABLE, _POSITIONS, _COLOURS = 65, 13, 64
-"""Numbers of values in a table, of positions of a piston in it, and of colours of speeds."""
+_TABLE, _POSITIONS, _COLOURS, _STILL = 65, 13, 64, 8
+"""Numbers of values in a table, of positions of a piston in it, of colours of speeds, and of colours in the
+still picture.
+"""
 _FASTEST, _HIGHEST = 3.0, 8.0
 """Ends of the tables of Maxwell's distribution (rms speeds) and of the barometric law (scale heights)."""
 _PICTURES = 100
@@ -60,6 +62,8 @@ def play(scene: Scene, seed: int = 0) -> View:
     walls, and reverse all velocities. Gauges show temperatures and pressures with errors and theory. The page
     contains the kernels of the event-driven engine, and computes the same bits. After each change the gas
     continues as ``Simulation(scene, seed=seed, initial=state)`` of the changed scene.
+
+    The first page of a kind of scene compiles its kernels, in about a minute.
 
     Parameters
     ----------
@@ -79,10 +83,6 @@ def play(scene: Scene, seed: int = 0) -> View:
         If the scene has three dimensions or a feature that is not available in a browser, or if no particle
         moves or falls.
 
-    Notes
-    -----
-    The first page of a kind of scene compiles its kernels, in about a minute.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -100,8 +100,33 @@ def play(scene: Scene, seed: int = 0) -> View:
     if scales(scene).crossing_time == float("inf"):
         raise SceneError("scene", scene, "nothing moves at the start, and nothing falls")
     engine = Path(__file__).with_name("gas.js").read_text(encoding="utf-8")
-    page = page_of("play.html", _MARK, GAS=engine, DATA=_packed(_content(scene, seed)))
+    content = _content(scene, seed)
+    still = _still(content["starts"][content["first"]], content)
+    box = f"0 0 {scene.container.lengths[0]:g} {scene.container.lengths[1]:g}"
+    page = page_of("play.html", _MARK, VIEWBOX=box, STILL=still, GAS=engine, DATA=_packed(content))
     return View(page, _HEIGHT)
+
+
+def _still(start: dict, content: dict) -> str:
+    """Return the particles at the start as paths of an SVG, one for each radius and colour.
+
+    The picture stands in the page until the gas is ready, or for ever if the browser does not run it.
+    """
+    from matplotlib.colors import to_hex
+
+    positions, velocities = (np.frombuffer(start[key]).reshape(-1, 2) for key in ("positions", "velocities"))
+    radii, weights = (np.frombuffer(start[key]) for key in ("radii", "weights"))
+    share = np.hypot(*velocities.T) / content["fastest"]
+    colours = np.minimum((_STILL * share).astype(int), _STILL - 1)
+    discs: dict[tuple, str] = {}
+    for (x, y), radius, colour, weight in zip(positions, radii, colours, weights, strict=True):
+        kind = radius, colour if weight else _STILL
+        discs[kind] = f"{discs.get(kind, '')}M{x:.4g} {content['lengths'][1] - y:.4g}h0"
+    palette = [*_viridis(_STILL), FIXED]
+    return "".join(
+        f'<path stroke="{to_hex(palette[colour])}" stroke-width="{2 * radius:g}" d="{line}"/>'
+        for (radius, colour), line in discs.items()
+    )
 
 
 def _packed(content: dict) -> str:
@@ -117,14 +142,19 @@ def _packed(content: dict) -> str:
     return base64.b64encode(zlib.compress(text.encode() + b"\0" + stored, 9)).decode()
 
 
+def _viridis(number: int) -> np.ndarray:
+    """Return colours of speeds, from 0 to the fastest, as red, green and blue."""
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, number))[:, :3]
+
+
 def _numbers(values: np.ndarray) -> bytes:
     return np.ascontiguousarray(values, dtype="<f8").tobytes()
 
 
 def _content(scene: Scene, seed: int) -> dict:
     """Return the data of the page."""
-    import matplotlib
-
     controls, speed = Controls(scene), scales(scene).thermal_speed
     starts = [_start(item, controls, seed) for item in _densities(scene)]
     stored = [image for start in starts for image in start["images"].values()]
@@ -132,7 +162,6 @@ def _content(scene: Scene, seed: int) -> dict:
     for image in stored:
         image["module"] = list(kinds).index(repr(image.pop("kernels")))
     code = modules(list(kinds.values()))
-    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, _COLOURS))[:, :3]
     numba = load_numba().__version__
     return {
         "made": f"gaspart {__version__}, numba {numba}, llvmlite {llvmlite.__version__}",
@@ -157,7 +186,7 @@ def _content(scene: Scene, seed: int) -> dict:
         "fastest": FASTEST * math.sqrt(2.0) * (speed or math.sqrt(2.0 * _fall(scene))),
         "pushed": _SPEED * speed,
         "interval": scales(scene).crossing_time / _PICTURES,
-        "colours": np.rint(255.0 * colours).astype(int).dot([1, 1 << 8, 1 << 16]).tolist(),
+        "colours": np.rint(255.0 * _viridis(_COLOURS)).astype(int).dot([1, 1 << 8, 1 << 16]).tolist(),
         "maxwell": _maxwell(),
         "barometric": np.exp(-np.linspace(0.0, _HIGHEST, _TABLE)).tolist(),
         "ends": [_FASTEST, _HIGHEST],
@@ -288,10 +317,8 @@ def _changes(base: dict, other: dict) -> dict:
 
 
 def _pressure(scene: Scene, controls: Controls) -> dict | None:
-    """Return p A / k_B T for positions of the side x high; None if unknown.
-
-    A is the accessible area. The walls of a rectangle count as the walls of a square with the same ratio of
-    perimeter and area.
+    """Return p A / k_B T for positions of the side x high; None if unknown. A is the accessible area. The
+    walls of a rectangle count as the walls of a square with the same ratio of perimeter and area.
     """
     gas, lengths = scene.gas, scene.container.lengths
     if gas is None or scene.walls or scene.has_piston:

@@ -99,12 +99,10 @@ def width() -> float:
 
 
 def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
-    """Create a figure of groups of panels, in the present layout.
-
-    Each of `groups` has the heights in inches of its panels, which lie above each other and share their x
-    axis. On a page the first groups fill the left column, and the others the right column; both columns have
-    about the same height. In a journal all groups are in one column. Returns (figure, panels in the order of
-    `groups`).
+    """Create a figure of groups of panels, in the present layout. Each of `groups` has the heights in inches
+    of its panels, which lie above each other and share their x axis. On a page the first groups fill the left
+    column, and the others the right column; both columns have about the same height. In a journal all groups
+    are in one column. Returns (figure, panels in the order of `groups`).
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -130,9 +128,8 @@ def new(*groups: Sequence[float]) -> tuple[Figure, list[Axes]]:
 
 
 def _columns(groups: Sequence[Sequence[float]]) -> list[Sequence[Sequence[float]]]:
-    """Split the groups into two columns; the higher column is as low as possible.
-
-    The groups keep their order.
+    """Split the groups into two columns; the higher column is as low as possible. The groups keep their
+    order.
     """
     if len(groups) == 1:
         return [groups]
@@ -158,10 +155,9 @@ def points(
     hollow: bool = False,
     **options: Any,
 ) -> ErrorbarContainer:
-    """Draw measured points, with the colour and marker of index `kind`, or with `options`.
-
-    `x` and `y` have the shape (n,); estimates have error bars. `options` are options of `Axes.errorbar`, such
-    as `color` and `marker`.
+    """Draw measured points, with the colour and marker of index `kind`, or with `options`. `x` and `y` have
+    the shape (n,); estimates have error bars. `options` are options of `Axes.errorbar`, such as `color` and
+    `marker`.
     """
     if isinstance(y, Estimate):
         y, error = y.value, y.error
@@ -179,9 +175,8 @@ def points(
 def label_axes(
     axis: Axes, x: str = "", y: str = "", legend: str = "", columns: int = 1, **limits: Any
 ) -> None:
-    """Label the axes of a panel; add a legend if its position is given.
-
-    `limits` are arguments of `Axes.set`.
+    """Label the axes of a panel; add a legend if its position is given. `limits` are arguments of
+    `Axes.set`.
     """
     labels = {"xlabel": x, "ylabel": y}
     axis.set(**{key: text for key, text in labels.items() if text}, **limits)
@@ -201,9 +196,8 @@ def level(axis: Axes, value: float, **options: Any) -> Line2D:
 
 
 def letter(axis: Axes, text: str) -> Text:
-    """Write (a), (b) ... and an optional short title above the left corner of a panel.
-
-    This position has no data.
+    """Write (a), (b) ... and an optional short title above the left corner of a panel. This position has no
+    data.
     """
     return axis.set_title(text, loc="left", fontweight="bold", pad=3.0)
 
@@ -215,10 +209,7 @@ def letters(*axes: Axes) -> None:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure atomically, in the format of its suffix.
-
-    Equal figures have equal bytes.
-    """
+    """Write a figure atomically, in the format of its suffix. Equal figures have equal bytes."""
     from gaspart.files import whole_file
 
     finish(figure)
@@ -245,10 +236,9 @@ def finish(figure: Figure) -> None:
 
 
 def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
-    """Extend an automatic logarithmic axis to the lower ends of error bars.
-
-    If one of several bars extends below 0, matplotlib 3.11 chooses the limit by the values alone, and
-    truncates the lower ends of all other bars too. `number` is 0 for x, 1 for y.
+    """Extend an automatic logarithmic axis to the lower ends of error bars. If one of several bars extends
+    below 0, matplotlib 3.11 chooses the limit by the values alone, and truncates the lower ends of all other
+    bars too. `number` is 0 for x, 1 for y.
     """
     from matplotlib.container import ErrorbarContainer
 
@@ -278,10 +268,8 @@ def _show_positive_ends(panel: Axes, axis: Axis, number: int) -> None:
 
 
 def _number_ticks(axis: Axis) -> None:
-    """Choose ticks of a logarithmic axis whose numbers do not overlap.
-
-    Ticks are at 1, 2, 5, 10 on a short axis, and at powers of ten on a long axis. Ticks that a figure has
-    chosen are kept.
+    """Choose ticks of a logarithmic axis whose numbers do not overlap. Ticks are at 1, 2, 5, 10 on a short
+    axis, and at powers of ten on a long axis. Ticks that a figure has chosen are kept.
     """
     from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, LogLocator, NullFormatter
 

@@ -15,19 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from gaspart.scene.faces import (
-    FLOW,
-    GRADIENT,
-    LeesEdwards,
-    Open,
-    Piston,
-    Sticky,
-    Surface,
-    Thermal,
-    Vibrating,
-    Well,
-)
+from gaspart.scene.faces import FLOW, GRADIENT, LeesEdwards, Open, Piston, Vibrating
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Sticky, Surface, Thermal, Well
 
 Colour = tuple[float, float, float]
 INK: Colour = (0.16, 0.16, 0.16)
@@ -143,9 +133,8 @@ def _warm_walls(scene: Scene) -> tuple[DrawnSurface, ...]:
 
 
 def _moving_walls(scene: Scene, position: float | None) -> tuple[DrawnSurface, ...]:
-    """Return the appearance of the moving interior wall.
-
-    The wall is drawn at the coordinate `position`; for None, at its initial coordinate.
+    """Return the appearance of the moving interior wall. The wall is drawn at the coordinate `position`; for
+    None, at its initial coordinate.
     """
     wall = scene.moving_wall
     if wall is None:

@@ -65,11 +65,9 @@ def trace(
 
 
 def cells(spheres: np.ndarray, lengths: np.ndarray) -> tuple:
-    """Divide container and spheres into cubic cells, and list the spheres in each cell.
-
-    The function returns the lowest corner (3,), the side of a cell, the numbers of cells (3,), the lists of
-    the spheres that reach into each cell c (listed[first[c] : first[c + 1]]), and each sphere's lowest cell
-    (N, 3).
+    """Divide container and spheres into cubic cells, and list the spheres in each cell. The function returns
+    the lowest corner (3,), the side of a cell, the numbers of cells (3,), the lists of the spheres that reach
+    into each cell c (listed[first[c] : first[c + 1]]), and each sphere's lowest cell (N, 3).
     """
     low, high = np.zeros(3), lengths.copy()
     side = float(lengths.max())

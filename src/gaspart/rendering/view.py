@@ -22,7 +22,7 @@ from gaspart.rendering.frames import open_source, particles_of, scene_of
 from gaspart.rendering.particles import FASTEST, FIXED, DrawnParticles
 from gaspart.rendering.style import COLOURS
 from gaspart.rendering.surfaces import DrawnSurface
-from gaspart.scene.face_checks import refuse_open
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import State
@@ -81,6 +81,9 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     The page can play, turn, move and zoom. It shows colours by speed or species, faces as in pictures, a
     legend, the time and a scale.
 
+    Positions are rounded to 1/64 of the smallest radius, or to 1/65534 of the side if that is larger. With
+    ten thousand particles in 200 frames, the page has about 7 MB.
+
     Parameters
     ----------
     source : str, Path, Dataset or Simulation
@@ -100,11 +103,6 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
     ------
     SceneError
         If a simulation has not advanced, or a file cannot be read.
-
-    Notes
-    -----
-    Positions are rounded to 1/64 of the smallest radius, or to 1/65534 of the side if that is larger. With
-    ten thousand particles in 200 frames, the page has about 7 MB.
 
     Examples
     --------
@@ -141,9 +139,10 @@ def view(source: str | Path | xr.Dataset | Simulation, frames: int = 200, order:
 
 
 def page_of(name: str, mark: str, **parts: str) -> str:
-    """Return a page from its file, the head that pages share, and texts by the words that they replace."""
+    """Return a page from its file, the shared head and style, and texts by the words that they replace."""
     text = "".join((_FOLDER / part).read_text(encoding="utf-8") for part in ("page.html", name))
-    for word, part in {"TITLE": mark, **parts}.items():
+    style = (_FOLDER / "style.css").read_text(encoding="utf-8")
+    for word, part in {"TITLE": mark, "STYLE": style, **parts}.items():
         text = text.replace(word, part, 1)
     return text
 
@@ -210,11 +209,9 @@ def _resolution(drawn: DrawnParticles) -> int:
 
 
 def _compressed_text(values: np.ndarray, modulus: int) -> str:
-    """Return integers below a modulus, frame by frame, as base64 of compressed changes.
-
-    Changes between frames are reduced by the modulus, so that a change across a periodic face is small. The
-    changes 0, -1, 1, -2, 2 ... are written as 0, 1, 2, 3, 4 ... All low bytes come first, then all high
-    bytes.
+    """Return integers below a modulus, frame by frame, as base64 of compressed changes. Changes between
+    frames are reduced by the modulus, so that a change across a periodic face is small. The changes 0, -1, 1,
+    -2, 2 ... are written as 0, 1, 2, 3, 4 ... All low bytes come first, then all high bytes.
     """
     numbers = values.astype(np.int32)
     changes = (np.diff(numbers, axis=0) + modulus // 2) % modulus - modulus // 2
@@ -224,9 +221,8 @@ def _compressed_text(values: np.ndarray, modulus: int) -> str:
 
 
 def _order(drawn: list[DrawnParticles]) -> dict:
-    """Return the local bond order of every particle in every frame.
-
-    The unit is the largest value on the scale.
+    """Return the local bond order of every particle in every frame. The unit is the largest value on the
+    scale.
     """
     first = drawn[0]
     if not all(first.periodic[: first.dimension]):
@@ -240,9 +236,8 @@ def _order(drawn: list[DrawnParticles]) -> dict:
 
 
 def _looks(surfaces: list[tuple[DrawnSurface, ...]]) -> dict:
-    """Return the appearance of faces and walls, and their corners in each frame.
-
-    If nothing moves, the corners are returned once.
+    """Return the appearance of faces and walls, and their corners in each frame. If nothing moves, the
+    corners are returned once.
     """
     frames = [
         [
@@ -279,10 +274,8 @@ def _in_space(vector: np.ndarray) -> list[float]:
 
 
 def _lines(lengths: np.ndarray, walls: list[np.ndarray]) -> np.ndarray:
-    """Return the ends of the container's edges and of the sides of walls.
-
-    The shape is (frames, 2M, 3). Walls have the shape (M, 2, d). If their positions are the same in all
-    frames, there is a single frame.
+    """Return the ends of the container's edges and of the sides of walls. The shape is (frames, 2M, 3). Walls
+    have the shape (M, 2, d). If their positions are the same in all frames, there is a single frame.
     """
     if all(np.array_equal(walls[0], segments) for segments in walls):
         walls = walls[:1]

@@ -33,11 +33,10 @@ if TYPE_CHECKING:
 
 
 def merged_with_default(path: Path, base: Path | None = None) -> tuple[dict[str, Any], list[Path]]:
-    """Merge a config over its base and its families, as the workflow does; return it with its files.
-
-    By default `base` is the `config.yaml` in the same folder. If that does not exist, it is
-    `config/config.yaml` below this folder, which the workflow in this folder uses. Raises SceneError for a
-    file that cannot be read.
+    """Merge a config over its base and its families, as the workflow does; return it with its files. By
+    default `base` is the `config.yaml` in the same folder. If that does not exist, it is `config/config.yaml`
+    below this folder, which the workflow in this folder uses. Raises SceneError for a file that cannot be
+    read.
     """
     path = resolve_path(path)
     defaults = (path.parent / "config.yaml", path.parent / "config/config.yaml")
@@ -55,10 +54,9 @@ _SECTIONS = {"experiments", "figures", "animations"}
 
 
 def add_families(config: dict[str, Any], folder: Path) -> list[Path]:
-    """Merge a config, in place, over the files of its families, and return these files.
-
-    The key `families` names files of the folder, or is `all`. The key `sizes` names a block in these files,
-    which is merged over the rest. Raises SceneError.
+    """Merge a config, in place, over the files of its families, and return these files. The key `families`
+    names files of the folder, or is `all`. The key `sizes` names a block in these files, which is merged over
+    the rest.
     """
     named, sizes = config.pop("families", None), config.get("sizes")
     if named is None:
@@ -134,19 +132,15 @@ def _error_of_removal(config: dict, contents: list[tuple[str, Any]]) -> SceneErr
 
 
 def read_numbers(config: dict, files: Sequence[str | Path]) -> None:
-    """Convert numbers such as 1e3 in a merged config; Snakemake reads them as text.
-
-    `files` are the merged files, in the order of merging. Text in quotes stays text. Raises SceneError for a
-    file that cannot be read.
+    """Convert numbers such as 1e3 in a merged config; Snakemake reads them as text. `files` are the merged
+    files, in the order of merging. Text in quotes stays text. Raises SceneError for a file that cannot be
+    read.
     """
     _read_numbers(config, [content for _, content in _contents(config, files)])
 
 
 def _read_numbers(block: Any, held: list[Any]) -> None:
-    """Convert the numbers of a block.
-
-    `held` lists the same block of each file.
-    """
+    """Convert the numbers of a block. `held` lists the same block of each file."""
     for key, value in block.items() if isinstance(block, dict) else enumerate(block):
         below = []
         for part in held:
@@ -159,9 +153,8 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
 
 
 def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
-    """Return the last file that contains a key, or the longest beginning of the key.
-
-    Each file comes with its contents. If no file contains the value, the option of Snakemake is returned.
+    """Return the last file that contains a key, or the longest beginning of the key. Each file comes with its
+    contents. If no file contains the value, the option of Snakemake is returned.
     """
     parts = key.replace("[", ".").split(".")
     # the key `scene.` and its remainder are one key
@@ -197,10 +190,8 @@ MODULE = describe(
 
 @cache
 def schema(modules: tuple[tuple[str, str], ...] = ()) -> Kind:
-    """Return the JSON schema of a config.
-
-    Scenes and engines are not part of the schema: they are validated when the points are made. `modules` are
-    the user's figures with a module, and its path.
+    """Return the JSON schema of a config. Scenes and engines are not part of the schema: they are validated
+    when the points are made. `modules` are the user's figures with a module, and its path.
     """
     figures = {
         figure: record({"experiments": _EXPERIMENTS, **settings})
@@ -216,10 +207,7 @@ def schema(modules: tuple[tuple[str, str], ...] = ()) -> Kind:
 
 
 def scene_schema() -> Kind:
-    """Return the JSON schema of a scene file.
-
-    Rules that concern several keys are left out.
-    """
+    """Return the JSON schema of a scene file. Rules that concern several keys are left out."""
     from gaspart.keys import schema_of
     from gaspart.scene.scene import Scene
 
@@ -228,10 +216,9 @@ def scene_schema() -> Kind:
 
 @contextmanager
 def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, dict[str, Point]]]]:
-    """Yield the valid config of a file and its points.
-
-    The working directory is changed to the folder of the scenes. For a config in a folder named `config`,
-    this is the parent folder; otherwise it is the folder of the file. Raises SceneError.
+    """Yield the valid config of a file and its points. The working directory is changed to the folder of the
+    scenes. For a config in a folder named `config`, this is the parent folder; otherwise it is the folder of
+    the file.
     """
     merged, files = merged_with_default(Path(path))
     folder = files[-1].parent
@@ -244,10 +231,9 @@ def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, di
 
 
 def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str, Point]]:
-    """Validate a merged config against the schema, then the parameters of every point's job.
-
-    `files` are the merged YAML files, in the order of merging. An error names the last file that contains the
-    key. Returns all points, by experiment and name. Raises SceneError.
+    """Validate a merged config against the schema, then the parameters of every point's job. `files` are the
+    merged YAML files, in the order of merging. An error names the last file that contains the key. Returns
+    all points, by experiment and name.
     """
     contents = _contents(config, files)
     try:
@@ -272,10 +258,9 @@ def check(config: dict, files: Sequence[str | Path] = ()) -> dict[str, dict[str,
 
 
 def check_values(config: object) -> None:
-    """Raise SceneError unless a config is a tree of limited size with valid values.
-
-    The tree consists of mappings, lists and plain values. Its depth and size are limited. Its numbers are
-    finite, and neither too large nor too small to compute with.
+    """Raise SceneError unless a config is a tree of limited size with valid values. The tree consists of
+    mappings, lists and plain values. Its depth and size are limited. Its numbers are finite, and neither too
+    large nor too small to compute with.
     """
     stack = [("", config, 0)]  # an explicit stack, so that a deep config does not overflow Python's stack
     for count in range(MOST_VALUES):
@@ -333,9 +318,8 @@ def _user_modules(config: dict) -> tuple[tuple[str, str], ...]:
 
 
 def _check_caption(figure: str, block: dict) -> None:
-    """Raise SceneError for a caption that the report cannot show.
-
-    The text is parsed if docutils is installed. It is installed wherever the report is made.
+    """Raise SceneError for a caption that the report cannot show. The text is parsed if docutils is
+    installed. It is installed wherever the report is made.
     """
     text = registry.caption(block)
     fault = place_fault(text)
@@ -361,9 +345,8 @@ def _animation(config: dict, animation: str, block: dict) -> None:
 
 
 def checked_points(config: dict, experiment: str) -> dict[str, Point]:
-    """Return the points of an experiment, by name, after a check of every point.
-
-    Each value of the grid is checked too. Raises SceneError.
+    """Return the points of an experiment, by name, after a check of every point. Each value of the grid is
+    checked too.
     """
     points = gridded_points(config, experiment)
     for point in points.values():
@@ -372,9 +355,8 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
-    """Return the points of an experiment, by name, after a check of its grid.
-
-    Each value of the grid is checked alone, without the other keys. Raises SceneError.
+    """Return the points of an experiment, by name, after a check of its grid. Each value of the grid is
+    checked alone, without the other keys.
     """
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
@@ -387,10 +369,7 @@ def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def check_point(point: Point) -> None:
-    """Make the parameters of a point's job.
-
-    Raises SceneError if its settings contradict each other.
-    """
+    """Make the parameters of a point's job. Raises SceneError if its settings contradict each other."""
     where = f"experiments.{point.experiment}"
     try:
         jobs.validate(point)
@@ -400,10 +379,7 @@ def check_point(point: Point) -> None:
 
 
 def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
-    """Yield every (key, value) of a grid.
-
-    An empty list yields nothing; the points report it.
-    """
+    """Yield every (key, value) of a grid. An empty list yields nothing; the points report it."""
     if isinstance(block, list):
         for part in block:
             yield from _grid_values(part)
@@ -414,9 +390,8 @@ def _grid_values(block: Any) -> Iterator[tuple[str, object]]:
 
 
 def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
-    """Return an error of a config; add an explanation if all keys are missing.
-
-    `config` is the merged config. `module` is True if another workflow uses this one as a module.
+    """Return an error of a config; add an explanation if all keys are missing. `config` is the merged config.
+    `module` is True if another workflow uses this one as a module.
     """
     if error.rule != "is required" or Path("config/config.yaml").exists() or (module and config):
         return error
@@ -431,10 +406,8 @@ def explain_error(error: SceneError, config: dict, module: bool) -> SceneError:
 
 
 def judge_config(path: Path) -> list[Check]:
-    """Check every point of every grid, and every figure.
-
-    A config next to `config.yaml` is merged over it, as in the workflow. Raises SceneError for a config that
-    cannot be run.
+    """Check every point of every grid, and every figure. A config next to `config.yaml` is merged over it, as
+    in the workflow. Raises SceneError for a config that cannot be run.
     """
     from gaspart.inspection.checks import Check  # takes 0.5 s, and planning does not need it
 

@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 
 
 def predict(path: str) -> list[str]:
-    """Predict the core-hours of each experiment of a config on this machine, as lines of text.
-
-    The last line is the sum. A config next to `config.yaml` is merged over it, as in the workflow. Raises
-    SceneError.
+    """Predict the core-hours of each experiment of a config on this machine, as lines of text. The last line
+    is the sum. A config next to `config.yaml` is merged over it, as in the workflow.
     """
     lines, total, unknown = [], 0.0, []
     with open_config(path) as (_, planned):
@@ -49,9 +47,8 @@ def predict(path: str) -> list[str]:
 
 
 def predicted_seconds(point: Point) -> float | None:
-    """Predict the CPU time of a point's simulations from the theoretical number of collisions.
-
-    None if this number is unknown.
+    """Predict the CPU time of a point's simulations from the theoretical number of collisions. None if this
+    number is unknown.
     """
     if point.job != "simulate":
         return None
@@ -84,9 +81,8 @@ def predicted_seconds(point: Point) -> float | None:
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """Return the relative speed at the nearest power of ten of the particle number.
-
-    Only these particle numbers were timed.
+    """Return the relative speed at the nearest power of ten of the particle number. Only these particle
+    numbers were timed.
     """
     return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
@@ -103,9 +99,8 @@ _COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "requ
 
 @dataclass(frozen=True)
 class Need:
-    """Claim with its `required` and its `reached` uncertainty.
-
-    A measurement longer by the factor `multiple` would just decide the claim.
+    """Claim with its `required` and its `reached` uncertainty. A measurement longer by the factor `multiple`
+    would just decide the claim.
     """
 
     claim: str
@@ -141,9 +136,8 @@ class Budget:
 
 
 def budgets(path: str | Path) -> list[Budget]:
-    """Return the budget of each figure of a finished config, the most expensive figure first.
-
-    Raises SceneError for an invalid config, and if a figure or a time is missing.
+    """Return the budget of each figure of a finished config, the most expensive figure first. Raises
+    SceneError for an invalid config, and if a figure or a time is missing.
     """
     import xarray as xr
 
@@ -169,10 +163,8 @@ def budgets(path: str | Path) -> list[Budget]:
 
 
 def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
-    """Return the lines of `gaspart budget` for a config.
-
-    If `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same
-    errors as `budgets`.
+    """Return the lines of `gaspart budget` for a config. If `target` is a CSV file, the budget is written to
+    this file, a line for each claim. Raises the same errors as `budgets`.
     """
     rows = budgets(path)
     if target is not None:
@@ -209,10 +201,7 @@ def shown_points(
 
 
 def point_seconds(results: Path, point: tuple[str, str]) -> float:
-    """Return the CPU time of a point's job.
-
-    Raises SceneError if the point was not made.
-    """
+    """Return the CPU time of a point's job. Raises SceneError if the point was not made."""
     for rule in ("simulate", "compute"):
         if used := job_time.read_used(results, rule, *point):
             return used.seconds

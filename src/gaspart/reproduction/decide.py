@@ -45,7 +45,6 @@ class Open:
 
 def decide(path: str | Path, target: str | Path, effort: float | None = None) -> list[str]:
     """Write the efforts of the next runs to the file `target`, and return lines that say which and how long.
-
     `path` is the config of a finished run, `target` a config with the efforts of experiments, which is laid
     over it. `effort` is that of the run, unless these files state it. Without a claim that more effort could
     decide nothing is written, and the list is empty. Raises SceneError if a figure has not been made.
@@ -81,9 +80,8 @@ def decide(path: str | Path, target: str | Path, effort: float | None = None) ->
 def find_open(
     figure: str, block: Mapping[str, Any], dataset: xr.Dataset, present: Mapping[str, float]
 ) -> list[Open]:
-    """Return the claims of a figure that more effort could decide.
-
-    `present` is the effort of each experiment.
+    """Return the claims of a figure that more effort could decide. `present` is the effort of each
+    experiment.
     """
     stated = claims_of(figure, block, dataset)
     names = block["experiments"]
@@ -118,9 +116,8 @@ def with_larger_errors(dataset: xr.Dataset, experiment: str) -> xr.Dataset:
 
 
 def next_efforts(undecided: list[Open], present: Mapping[str, float]) -> dict[str, float]:
-    """Return the efforts of the experiments to continue: twice the present ones, at most `MOST`.
-
-    A claim that would need more than twice `MOST` is left open.
+    """Return the efforts of the experiments to continue: twice the present ones, at most `MOST`. A claim that
+    would need more than twice `MOST` is left open.
     """
     wanted = {name for one in undecided if one.effort <= 2.0 * MOST for name in one.experiments}
     return {name: min(2.0 * present[name], MOST) for name in sorted(wanted) if present[name] < MOST}

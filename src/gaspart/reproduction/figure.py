@@ -23,7 +23,7 @@ from gaspart.analysis.run import Run
 from gaspart.analysis.statistics import autocorrelation_time, average, correlated_mean, jackknife
 from gaspart.keys import Kind
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 SOURCE_C = "[source C]"
@@ -35,10 +35,9 @@ ENSKOG_LIMIT = 0.02
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a figure: the settings of its config entry, and three functions.
-
-    measure(points, settings) returns the data set, claims(dataset) its claims, draw(dataset) the picture.
-    `key` is the number of the panel that shows the finding; None if it is the whole picture.
+    """The parts of a figure: the settings of its config entry, and three functions. measure(points, settings)
+    returns the data set, claims(dataset) its claims, draw(dataset) the picture. `key` is the number of the
+    panel that shows the finding; None if it is the whole picture.
     """
 
     settings: dict[str, Kind]
@@ -68,9 +67,8 @@ def find_parts(module: str, name: str) -> Parts:
 
 
 def content_key(paths: Iterable[str | Path], *stated: Any) -> str:
-    """Return a digest of files, of those in folders too, and of plain values.
-
-    A data set with this key was made from the same content: it need not be measured again.
+    """Return a digest of files, of those in folders too, and of plain values. A data set with this key was
+    made from the same content: it need not be measured again.
     """
     key = hashlib.sha256(json.dumps(stated).encode())
     for path in map(Path, paths):
@@ -81,9 +79,8 @@ def content_key(paths: Iterable[str | Path], *stated: Any) -> str:
 
 
 class Blocks:
-    """Averages over independent blocks; a call returns a function of the means with its jackknife error.
-
-    Each block is a tuple of numbers or arrays, which are the arguments of the function.
+    """Averages over independent blocks; a call returns a function of the means with its jackknife error. Each
+    block is a tuple of numbers or arrays, which are the arguments of the function.
     """
 
     def __init__(self, blocks: Iterable[tuple]) -> None:
@@ -99,10 +96,9 @@ class Blocks:
 
 
 def runs(point: Point, first: int | None = None) -> Iterator[Run]:
-    """Yield the frames of each replica, after its equilibration or from frame `first` on.
-
-    Each run is open until the next run is requested. Raises OSError for a file that cannot be read, and
-    ValueError for the file of another point.
+    """Yield the frames of each replica, after its equilibration or from frame `first` on. Each run is open
+    until the next run is requested. Raises OSError for a file that cannot be read, and ValueError for the
+    file of another point.
     """
     scene, schedule = point.scene, point.schedule
     before = schedule.equilibration_frames
@@ -169,9 +165,8 @@ COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
 
 
 def series_of(run: Run) -> Series:
-    """Return the series of a run of a plain gas in a periodic container.
-
-    Raises SceneError for any other scene.
+    """Return the series of a run of a plain gas in a periodic container. Raises SceneError for any other
+    scene.
     """
     gas = plain_gas(run.scene)
     thermal = math.sqrt(run.temperature * run.freedom / (gas.dimension * gas.count * gas.mass))

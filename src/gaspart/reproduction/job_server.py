@@ -68,9 +68,8 @@ _AT_START = dict(os.environ)
 
 
 def start(python: str, client: Path) -> str:
-    """Start the server, and return the shell command that runs a script in it.
-
-    `python` is the shell command of the interpreter. It runs scripts if there is no server.
+    """Start the server, and return the shell command that runs a script in it. `python` is the shell command
+    of the interpreter. It runs scripts if there is no server.
     """
     if sys.platform != "linux":
         return python
@@ -100,9 +99,8 @@ class _Client:
         self._files: list[int] = []
 
     def receive(self) -> int:
-        """Receive a part of the request; when it is complete, start the job and return its process.
-
-        Raises OSError if the client has ended, belongs to another user, or asks for what a fork cannot do.
+        """Receive a part of the request; when it is complete, start the job and return its process. Raises
+        OSError if the client has ended, belongs to another user, or asks for what a fork cannot do.
         """
         data, files, _, _ = socket.recv_fds(self.connection, _MOST, 3)
         self._request += data
@@ -166,9 +164,8 @@ def _is_as_loaded(environment: dict[str, str]) -> bool:
 
 
 def serve(descriptor: int) -> None:
-    """Fork this process for each request.
-
-    The function returns when the standard input is closed and all forks have ended.
+    """Fork this process for each request. The function returns when the standard input is closed and all
+    forks have ended.
     """
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)  # forks use them, and so does the process that started this one
@@ -209,9 +206,8 @@ def _answer(client: _Client, jobs: dict[int, _Client], selector: selectors.BaseS
 
 
 def _preload() -> None:
-    """Load the modules that jobs need.
-
-    A module that cannot be loaded is reported by the job that needs it.
+    """Load the modules that jobs need. A module that cannot be loaded is reported by the job that
+    needs it.
     """
     from gaspart.kernels.compile.cache import load_numba
     from gaspart.reproduction.registry import modules

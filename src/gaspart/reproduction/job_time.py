@@ -17,11 +17,8 @@ _LINE = re.compile(r"^processor time: (\d+\.\d+) s, memory: (\d+\.\d+|nan) MB$",
 
 
 class Used(NamedTuple):
-    """CPU time in s and peak memory in MB of a job.
-
-    The CPU time includes child processes.
-
-    An unknown number is NaN.
+    """CPU time in s and peak memory in MB of a job. The CPU time includes child processes. An unknown number
+    is NaN.
     """
 
     seconds: float
@@ -34,10 +31,8 @@ def describe() -> str:
 
 
 def read_used(results: Path, rule: str, *names: str) -> Used | None:
-    """Return time and memory from the log of a job, or None.
-
-    `results` is the parent folder of the logs. `names` are the wildcards of the rule, as folders and file
-    name of the log.
+    """Return time and memory from the log of a job, or None. `results` is the parent folder of the logs.
+    `names` are the wildcards of the rule, as folders and file name of the log.
     """
     log = (results / "logs").joinpath(rule, *names)
     try:

@@ -59,9 +59,8 @@ def families() -> dict[str, str]:
 
 
 def find(figure: str, entry: Mapping[str, Any]) -> tuple[str, str]:
-    """Return the family of a figure of a config, and the name of its parts.
-
-    `entry` is the config entry of the figure. The family of a user's module is its path.
+    """Return the family of a figure of a config, and the name of its parts. `entry` is the config entry of
+    the figure. The family of a user's module is its path.
     """
     if "module" in entry:
         return entry["module"], figure
@@ -84,9 +83,8 @@ def caption(entry: Mapping[str, Any]) -> str:
 
 
 def validate(figure: str, entry: Mapping[str, Any], points: Sequence[Point]) -> None:
-    """Apply the rules of a figure with a `kind` that go beyond the kinds of its settings.
-
-    `points` are the points of the figure. Raises SceneError.
+    """Apply the rules of a figure with a `kind` that go beyond the kinds of its settings. `points` are the
+    points of the figure.
     """
     if "kind" in entry:
         own.validate(figure, entry, points)

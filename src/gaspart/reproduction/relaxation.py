@@ -26,10 +26,9 @@ _PACKING_FRACTION = 1e-3  # packing fraction
 
 
 def relaxation(dimension: int, count: int, collisions: float, seed: int) -> np.ndarray:
-    """Simulate the relaxation of speeds, and return rows of `COLUMNS`, (rows, 4).
-
-    The columns are 2 N_coll / N, <v^4> / <v^2>^2, the fraction of particles without a collision so far, and
-    <v> divided by the root-mean-square speed. The run ends after `collisions` collisions of a particle.
+    """Simulate the relaxation of speeds, and return rows of `COLUMNS`, (rows, 4). The columns are 2 N_coll /
+    N, <v^4> / <v^2>^2, the fraction of particles without a collision so far, and <v> divided by the
+    root-mean-square speed. The run ends after `collisions` collisions of a particle.
     """
     unit = np.pi / (4.0 if dimension == 2 else 6.0)
     side = (count * unit / _PACKING_FRACTION) ** (1.0 / dimension)

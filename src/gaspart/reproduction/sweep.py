@@ -43,8 +43,7 @@ from gaspart.runs.ending import Accuracy
 from gaspart.scene.scene import Scene, require_scene
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.recipe import multiple
-from gaspart.trajectory.run_options import required_contents
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until, required_contents
 from gaspart.workers import in_processes
 from gaspart.yaml_text import dump_yaml
 
@@ -80,6 +79,11 @@ def sweep(
     """Run a scene for each combination of parameter values, and measure observables of each run.
 
     Trajectories are stored. A repeated call simulates only what is missing in `folder`.
+
+    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
+    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
+    otherwise each point would have another energy. A complete trajectory is not simulated again. An
+    interrupted trajectory is continued.
 
     Parameters
     ----------
@@ -144,13 +148,6 @@ def sweep(
     --------
     run : A single run.
 
-    Notes
-    -----
-    If some of radius, packing fraction and count vary, the others keep their values as far as possible. If
-    runs conserve their energy, species with a `temperature` have exactly this temperature at the start;
-    otherwise each point would have another energy. A complete trajectory is not simulated again. An
-    interrupted trajectory is continued.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -190,7 +187,11 @@ def sweep(
     for name, reason in failures.items():
         next(done)
         _complain(name, reason)
-    _make_folder(config["points"])
+    try:
+        Path(config["points"], EXPERIMENT).mkdir(parents=True, exist_ok=True)
+    except (OSError, UnicodeEncodeError) as error:
+        reason = getattr(error, "strerror", None) or "its name is not UTF-8"
+        raise SceneError("folder", config["points"], f"cannot be made: {reason}") from None
     make_all(able, workers, bool(overwrite), report)
     rows = [_row(point, names, equilibration is None, failures.get(point.name, "")) for point in points]
     about = {"scene": dump_yaml(scene.to_dict()), "engine": json.dumps(engine_to_dict(engine)), "seed": seed}
@@ -210,14 +211,11 @@ def _with_equal_energies(scene: Scene) -> Scene:
 
 
 def _axes(over: object, engine: Engine) -> dict[str, list]:
-    """Return the values of each varying key, as Python numbers, words and lists.
-
-    A single value counts as a list of one value. Raises SceneError.
-    """
+    """Return the values of each varying key, as Python numbers, words and lists."""
     if not isinstance(over, Mapping):
         rule = "must be a mapping from each key that varies to its values, such as {'count': [50, 100]}"
         raise SceneError("over", over, rule)
-    axes = {key: _values(f"over.{key}", values) for key, values in over.items()}
+    axes = {key: _values(values) for key, values in over.items()}
     check_values({"over": axes})
     keys, parts = _point_keys(engine), {field.name for field in fields(Scene)}
     for key, values in axes.items():
@@ -234,21 +232,12 @@ def _axes(over: object, engine: Engine) -> dict[str, list]:
     return axes
 
 
-def _values(where: str, values: Any) -> list:
-    """Return the values of a key.
-
-    Raises SceneError for too many values, or for an iterator that fails.
-    """
+def _values(values: Any) -> list:
+    """Return the values of a key; a single value counts as a list of one value."""
     plain = _plain(values)
     if isinstance(plain, str | bytes | Mapping) or not isinstance(plain, Iterable):
         return [plain]
-    try:
-        listed = [_plain(value) for value in islice(plain, MOST_POINTS + 1)]
-    except Exception:  # an iterator of the user's code may raise anything
-        raise SceneError(where, values, "must be a list of values") from None
-    if len(listed) > MOST_POINTS:
-        raise SceneError(where, len(listed), f"a grid may have {MOST_POINTS} points")
-    return listed
+    return [_plain(value) for value in islice(plain, MOST_POINTS + 1)]
 
 
 def _plain(value: Any) -> Any:
@@ -261,10 +250,7 @@ def _plain(value: Any) -> Any:
 
 
 def _names(observables: object, axes: Mapping[str, list]) -> list[str]:
-    """Return the distinct names of the observables.
-
-    A single name counts as a list of one name. Raises SceneError.
-    """
+    """Return the distinct names of the observables; a single name counts as a list of one name."""
     listed = [observables] if isinstance(observables, str) else observables
     if not isinstance(listed, Iterable) or isinstance(listed, bytes | Mapping):
         raise SceneError("observables", observables, "must be the names of observables")
@@ -283,10 +269,7 @@ def _length(
     samples: int | None,
     equilibration: float | None,
 ) -> dict[str, Any]:
-    """Return the keys for the length of a point.
-
-    Raises SceneError.
-    """
+    """Return the keys for the length of a point."""
     if (duration is None) == (until is None):
         raise SceneError("duration", duration, "must be given, or until, but not both")
     if until is None and at_most is not None:
@@ -306,10 +289,7 @@ def _length(
 
 
 def _contents(names: list[str], correlations: Correlations | None, length: dict[str, Any]) -> dict[str, Any]:
-    """Return the keys for the contents of a point's files.
-
-    Raises SceneError.
-    """
+    """Return the keys for the contents of a point's files."""
     stored: dict[str, Any] = required_contents({OBSERVABLES[name].needs for name in names})
     if "until" in length:
         del stored["pairs"]
@@ -337,8 +317,7 @@ def _point_keys(engine: Engine) -> set[str]:
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
     """Return the keys of a point's scene and engine that do not vary.
 
-    If a key of a gas varies, the scene is described by such keys. It must then be a single species in a
-    container. Raises SceneError.
+    If a key of a gas varies, the scene is described by such keys, and must be one species in a container.
     """
     settings = {"engine" if key == "name" else key: value for key, value in engine_to_dict(engine).items()}
     varied = next((key for key in axes if key in EXTENTS or key in GAS), None)
@@ -368,35 +347,17 @@ def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[st
 
 
 def _root(folder: Any) -> str:
-    """Return the absolute path of the folder of a sweep.
-
-    Raises SceneError.
-    """
+    """Return the absolute path of the folder of a sweep; raise SceneError for another value."""
     if not isinstance(folder, str | Path) or not str(folder) or "\0" in str(folder):
         raise SceneError("folder", folder, "must be the path of a folder")
     return str(Path(folder).absolute())
-
-
-def _make_folder(root: str) -> None:
-    """Make the folder of the points, unless it exists.
-
-    Raises SceneError.
-    """
-    try:
-        Path(root, EXPERIMENT).mkdir(parents=True, exist_ok=True)
-    except (OSError, UnicodeEncodeError) as error:
-        reason = getattr(error, "strerror", None) or "its name is not UTF-8"
-        raise SceneError("folder", root, f"cannot be made: {reason}") from None
 
 
 # The points: which of them can be run, their trajectories, and their results.
 
 
 def _plan(config: dict) -> tuple[list[Point], dict[str, str]]:
-    """Return the points in order, and the reasons, by name, why points cannot be run.
-
-    Raises SceneError for values that no point can use, or if no point can be run.
-    """
+    """Return the points in order, and the reasons, by name, why points cannot be run, unless none can."""
     try:
         points = list(gridded_points(config, EXPERIMENT).values())
     except SceneError as error:
@@ -439,11 +400,10 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
 def make_all(
     points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points, and call report(point, reason) for each.
+    """Make the trajectories of all points, and call report(point, reason of a failure or "") for each.
 
-    The reason states why the point could not be made; "" if it was made. Points with existing trajectories
-    come first, so that a conflict is found before any run. Raises SceneError for files that cannot be
-    written, or belong to another sweep.
+    Points with existing trajectories come first, so that a conflict is found before any run. Raises
+    SceneError for files that cannot be written, or belong to another sweep.
     """
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:
@@ -464,11 +424,7 @@ def _make_in_process(tell: Callable[[Any], None], values: dict, path: str, overw
 
 
 def _make(point: Point, overwrite: bool) -> str:
-    """Make the trajectories of a point, or check existing trajectories in its folder.
-
-    Returns the reason for a failure, or "". The failure does not affect other points. Raises SceneError for
-    files.
-    """
+    """Make the trajectories of a point, or check existing ones; return the reason of a failure, or ""."""
     folder = Path(point.path)
     try:
         all_recipes = recipes(**point.arguments)

@@ -36,7 +36,7 @@ class SweepTable(ByFace):
         """Draw an observable with bars of one standard deviation, and theory as black lines.
 
         There is one curve for each value of the other dimensions. The theory is known at the points of the
-        sweep; the line between them is a monotone cubic.
+        sweep, which lines join.
         """
         import matplotlib.pyplot as plt
 
@@ -67,10 +67,7 @@ class SweepTable(ByFace):
 
 
 def _check_name(key: str, name: str | None, names: list[str]) -> str:
-    """Return a name of the table, by default the first.
-
-    Raises SceneError.
-    """
+    """Return a name of the table, by default the first."""
     if not names:
         raise SceneError(key, name, "there is nothing to be drawn: the sweep has one point")
     if name is not None and name not in names:
@@ -85,31 +82,14 @@ def _draw_curve(axis: Axes, curve: xr.Dataset, name: str, along: str, label: str
     axis.errorbar(x, value, error, fmt="o", markersize=3, capsize=2, label=label or None)
     if f"{name}_theory" in curve:
         order = np.argsort(x)
-        x, theory = x[order], curve[f"{name}_theory"].values[order]
-        if x.dtype.kind not in "fiu":
-            axis.plot(x, theory, "x", color="black")
-        else:
-            axis.plot(*_refined(x, theory), color="black", linewidth=1.0)
-
-
-_FINE = 200
-
-
-def _refined(x: np.ndarray, theory: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return further points of a theory between its known ones, unless some are unknown."""
-    if len(x) < 3 or not np.isfinite(theory).all() or not (np.diff(x) > 0.0).all():
-        return x, theory
-    from scipy.interpolate import PchipInterpolator
-
-    fine = np.union1d(x, np.linspace(x[0], x[-1], _FINE))
-    return fine, PchipInterpolator(x, theory)(fine)
+        form = "-" if x.dtype.kind in "fiu" else "x"
+        axis.plot(x[order], curve[f"{name}_theory"].values[order], form, color="black", linewidth=1.0)
 
 
 def columns(name: str, replicas: list[Observable]) -> Iterable[tuple[str, xr.DataArray]]:
-    """Yield the variables of an observable of a point.
-
-    All observables share dimensions whose coordinates are names. Other dimensions belong to one observable;
-    their positions are a variable, because they may differ from point to point.
+    """Yield the variables of an observable of a point. All observables share dimensions whose coordinates are
+    names. Other dimensions belong to one observable; their positions are a variable, because they may differ
+    from point to point.
     """
     first, quantity = replicas[0].estimate, replicas[0].attrs["quantity"]
     own = {dim: f"{name}_{dim}" for dim in first.dims if not DIMENSIONS[str(dim)].names}

@@ -46,11 +46,9 @@ class _Columns:
 
 
 class Row(_Columns):
-    """Row of a table.
-
-    Columns are single numbers or words, single estimates, or arrays over the inner dimensions. Arrays have no
-    entries for replicas that only other rows have. Use a row to format a text, as `"{count:.0f}
-    discs".format_map(row)`.
+    """Row of a table. Columns are single numbers or words, single estimates, or arrays over the inner
+    dimensions. Arrays have no entries for replicas that only other rows have. Use a row to format a text, as
+    `"{count:.0f} discs".format_map(row)`.
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
@@ -65,13 +63,12 @@ class Row(_Columns):
 
 
 class Table(_Columns):
-    """Rows of a data set along its dimension `over`; empty if it has no such dimension.
-
-    A column is an attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise
-    an array (rows, ...). Other variables and attributes are as in the data set. `table[condition]` contains
-    the rows for which the condition (rows,) is true. A slice, or a list of indices, selects rows too.
-    `table[0]` is a Row, and iteration yields Rows. A table without rows is false. Raises AttributeError for a
-    name that is no column.
+    """Rows of a data set along its dimension `over`; empty if it has no such dimension. A column is an
+    attribute: `table.Z` is an Estimate of all rows if there is a variable Z_error, otherwise an array (rows,
+    ...). Other variables and attributes are as in the data set. `table[condition]` contains the rows for
+    which the condition (rows,) is true. A slice, or a list of indices, selects rows too. `table[0]` is a Row,
+    and iteration yields Rows. A table without rows is false. Raises AttributeError for a name that is no
+    column.
     """
 
     def __init__(self, dataset: xr.Dataset, over: str) -> None:
@@ -79,9 +76,8 @@ class Table(_Columns):
 
     @classmethod
     def from_prefixed(cls, dataset: xr.Dataset, over: str) -> Table:
-        """Return the rows along `over`, from the variables that begin with its name.
-
-        See the function `merge_with_prefixes`.
+        """Return the rows along `over`, from the variables that begin with its name. See the function
+        `merge_with_prefixes`.
         """
         start = f"{over}_"
         names = {name: str(name).removeprefix(start) for name in dataset if str(name).startswith(start)}
@@ -99,9 +95,8 @@ class Table(_Columns):
         return (self[n] for n in range(len(self)))
 
     def by(self, *keys: str | np.ndarray) -> Iterator[tuple[Any, ...]]:
-        """Yield the values of the keys, and the rows with these values, in ascending order.
-
-        Keys are names of columns, or arrays (rows,).
+        """Yield the values of the keys, and the rows with these values, in ascending order. Keys are names of
+        columns, or arrays (rows,).
         """
         if not self:
             return
@@ -116,10 +111,7 @@ class Table(_Columns):
         return Table(part, self._over)
 
     def assign(self, **columns: Any) -> Table:
-        """Return the table with further columns.
-
-        A column is an array (rows,), or a value for all rows.
-        """
+        """Return the table with further columns. A column is an array (rows,), or a value for all rows."""
         filled = {
             name: (self._over, values if np.ndim(values) else [values] * len(self))
             for name, values in _spread(columns).items()
@@ -136,10 +128,9 @@ def table(
     units: Mapping[str, str] | None = None,
     of: Sequence[Any] | None = None,
 ) -> xr.Dataset:
-    """Return a data set with a row for each point; row(point, *rest) returns the columns.
-
-    An Estimate `name` becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and
-    error becomes the first two.
+    """Return a data set with a row for each point; row(point, *rest) returns the columns. An Estimate `name`
+    becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and error becomes the first
+    two.
 
     inner, units : see `from_rows`.
     of : points of each row, if `points` do not determine them.
@@ -154,9 +145,8 @@ def table(
 
 
 def made_of(value: Any) -> list[str]:
-    """Return a text `experiment/name` for each point that a value contains.
-
-    The value is a point of a grid, or lists and mappings of such points.
+    """Return a text `experiment/name` for each point that a value contains. The value is a point of a grid,
+    or lists and mappings of such points.
     """
     if hasattr(value, "experiment") and hasattr(value, "name"):
         return [f"{value.experiment}/{value.name}"]
@@ -204,9 +194,8 @@ def _spread(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def merge_with_prefixes(**tables: xr.Dataset) -> xr.Dataset:
-    """Merge tables with different rows to one data set; add their dimensions as prefixes.
-
-    The column `volume` along `path` becomes the variable `path_volume`.
+    """Merge tables with different rows to one data set; add their dimensions as prefixes. The column `volume`
+    along `path` becomes the variable `path_volume`.
     """
     renamed = (part.rename({name: f"{over}_{name}" for name in part}) for over, part in tables.items())
     return xr.merge(renamed, join="outer", compat="no_conflicts")
@@ -239,9 +228,8 @@ def from_rows(
 
 
 def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
-    """Return the entries of a row for numbers with uncertainties.
-
-    The entries are `name`, `name`_error, and `name`_freedom.
+    """Return the entries of a row for numbers with uncertainties. The entries are `name`, `name`_error, and
+    `name`_freedom.
 
     numbers : by name, an Estimate, or a value and its error; numbers or arrays.
     freedom : degrees of freedom for values with errors; without it they have no such entry.
@@ -258,9 +246,8 @@ def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | No
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Join arrays of the same number of dimensions along a new first axis.
-
-    An empty array is replaced by a single NaN.
+    """Join arrays of the same number of dimensions along a new first axis. An empty array is replaced by a
+    single NaN.
     """
     shape = max((array.shape for array in arrays), key=len)
     if all(array.shape == shape for array in arrays):

@@ -22,12 +22,15 @@ from gaspart.engines import Engine
 from gaspart.errors import SceneError
 from gaspart.scene.scene import Scene
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.run_options import Contents, required_contents
-from gaspart.trajectory.until import Requirement, Until
+from gaspart.trajectory.run_options import Contents, Requirement, Until, required_contents
 
 
 class Accuracy(Requirement):
     """Requested accuracy of an observable: its standard error divided by its absolute value.
+
+    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
+    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
+    shorter.
 
     Parameters
     ----------
@@ -53,12 +56,6 @@ class Accuracy(Requirement):
     --------
     run : Run a scene until such accuracies are reached.
     reached_accuracy : Accuracies that a run has reached.
-
-    Notes
-    -----
-    The run also stores an `ImpulseTally` under three conditions: the accuracy is required for the density, or
-    for the pressure on walls across a single axis; the engine supports the tally; and the tally makes the run
-    shorter.
 
     Examples
     --------
@@ -118,9 +115,8 @@ class Accuracy(Requirement):
 def contents_until(
     until: Until, scene: Scene, engine: Engine, contents: Contents, from_state: bool
 ) -> Contents:
-    """Return the contents of a file, with displacements if a requested accuracy needs them.
-
-    Raises SceneError for an accuracy that this run cannot measure or can never reach.
+    """Return the contents of a file, with displacements if a requested accuracy needs them. Raises SceneError
+    for an accuracy that this run cannot measure or can never reach.
 
     from_state : True if the run starts from a prescribed state.
     """
@@ -133,10 +129,9 @@ def contents_until(
 
 
 def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, contents: Contents) -> None:
-    """Raise SceneError for an accuracy of an observable that this run cannot measure.
-
-    There are three possible reasons: the observable is not defined for the scene; runs of the engine do not
-    determine the observable; or the data of the observable are not in the file.
+    """Raise SceneError for an accuracy of an observable that this run cannot measure. There are three
+    possible reasons: the observable is not defined for the scene; runs of the engine do not determine the
+    observable; or the data of the observable are not in the file.
     """
     walls = walls_of(requirement.observable, scene)
     try:
@@ -150,10 +145,8 @@ def require_measurable(requirement: Requirement, scene: Scene, engine: Engine, c
 
 
 def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, from_state: bool) -> None:
-    """Raise SceneError for a run that would never end.
-
-    Either nothing ever happens in the scene, or the scene has no steady state and the run has no maximum
-    length.
+    """Raise SceneError for a run that would never end. Either nothing ever happens in the scene, or the scene
+    has no steady state and the run has no maximum length.
     """
     kinds = [kind for kind in scene.kinds if kind.count]
     if not kinds:
@@ -175,10 +168,8 @@ def _require_end(requirement: Requirement, scene: Scene, at_most: float | None, 
 
 
 def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> None:
-    """Raise SceneError for an accuracy that the mean of replicas never reaches.
-
-    The initial energy differs between replicas, because each replica has its own seed. This scatter limits
-    the accuracy of the mean.
+    """Raise SceneError for an accuracy that the mean of replicas never reaches. The initial energy differs
+    between replicas, because each replica has its own seed. This scatter limits the accuracy of the mean.
     """
     if replicas == 1:
         return
@@ -198,11 +189,9 @@ def require_reachable(requirement: Requirement, scene: Scene, replicas: int) -> 
 
 
 def default_sample_interval(scene: Scene, engine: Engine, correlations: Correlations | None) -> float:
-    """Return the default time between frames, to two digits.
-
-    The interval is the mean time between two collisions of a particle. Without collisions it is the mean time
-    in which a particle crosses the container. It is rounded to a multiple of the engine's steps and of the
-    samples of correlations.
+    """Return the default time between frames, to two digits. The interval is the mean time between two
+    collisions of a particle. Without collisions it is the mean time in which a particle crosses the
+    container. It is rounded to a multiple of the engine's steps and of the samples of correlations.
     """
     from gaspart.accuracy.scales import scales, two_digits
 

@@ -5,10 +5,11 @@ Both functions run scenes for a duration or until observables are accurate, also
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.engines import Engine, resolve_engine
@@ -29,14 +30,13 @@ from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
 from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
-from gaspart.trajectory.last_state import last_state
+from gaspart.trajectory.export import last_state
 from gaspart.trajectory.opening import partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import find_run, in_replicas, replica_paths
 from gaspart.trajectory.run import WriteOptions
-from gaspart.trajectory.run_options import Contents
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Contents, Until
 
 
 def run(
@@ -68,6 +68,9 @@ def run(
     The run ends after `duration`, or, with `until`, when all requested accuracies are reached. If an
     interrupted run with the same settings and program version is at `path`, it is continued. If a complete
     run with the same settings is at `path`, nothing is changed.
+
+    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
+    before the handlers of the caller are executed.
 
     Parameters
     ----------
@@ -143,11 +146,6 @@ def run(
     open_trajectory : Open the file as an xarray.Dataset.
     Simulation : Advance a scene without a file.
 
-    Notes
-    -----
-    If contacts are rough, the file also contains spins. After SIGINT or SIGTERM a checkpoint is written
-    before the handlers of the caller are executed.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -157,57 +155,39 @@ def run(
     ...     trajectory.sizes["frame"]
     21
     """
-    engine = _engine_of(scene, engine)
+    asked = locals()  # by the names that `Contents`, `Recipe` and `WriteOptions` give them
+    require_scene(scene)
+    engine = resolve_engine(engine)
     request = _request(duration, sample_interval, until, at_most)
-    contents = Contents(
-        displacements=displacements, follow=follow, keep=keep, correlations=correlations, pairs=pairs,
-        tallies=tallies,  # type: ignore[arg-type]  # checked there, and made a tuple
-    )  # fmt: skip
+    contents = Contents(**_fields_among(Contents, asked))
     if request is not None:
         contents = contents_until(request, scene, engine, contents, from_state=initial is not None)
         contents = _with_useful_tally(contents, request, scene, engine)
+    asked |= field_values(contents)
+    asked |= {"engine": engine, "until": request, "initial": _start(initial, scene, path, replicas, seed)}
     if sample_interval is None:
-        sample_interval = default_sample_interval(scene, engine, correlations)
-    recipe = Recipe(
-        scene, engine, seed, duration, sample_interval, until=request,
-        initial=_start(initial, scene, path, replicas, seed), **field_values(contents),
-    )  # fmt: skip
-    options = WriteOptions(checkpoint_seconds, progress, overwrite, Examiner(examined), keep_checkpoint)
-    return _record(_in_replicas(recipe, replicas), _require_path(path), options, examined)
+        asked["sample_interval"] = default_sample_interval(scene, engine, correlations)
+    recipes = _in_replicas(Recipe(**_fields_among(Recipe, asked)), replicas)
+    options = WriteOptions(examiner=Examiner(examined), **_fields_among(WriteOptions, asked))
+    if len(recipes) > 1:
+        return record_together(recipes, _require_path(path), options, examined)
+    return trajectory.record(recipes[0], _require_path(path), options)
 
 
-def _engine_of(scene: object, engine: Engine | str | None) -> Engine:
-    """Return the engine of a run, see `resolve_engine`.
-
-    Raises SceneError for an unknown engine, and if `scene` is not a scene.
-    """
-    require_scene(scene)
-    return resolve_engine(engine)
+def _fields_among(kind: Any, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values, by name, that are fields of a dataclass."""
+    return {item.name: values[item.name] for item in fields(kind) if item.name in values}
 
 
 def _in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
-    """Return the recipes of the replicas of a run.
-
-    Raises SceneError under the same conditions as `in_replicas`, and for an accuracy that the mean of the
-    replicas can never reach.
+    """Return the recipes of the replicas of a run. Raises SceneError under the same conditions as
+    `in_replicas`, and for an accuracy that the mean of the replicas can never reach.
     """
     recipes, until = in_replicas(recipe, replicas), recipe.until
     if until is not None and until.at_most is None and recipe.initial is None:
         for requirement in until.accuracies:
             require_reachable(requirement, recipe.scene, replicas)
     return recipes
-
-
-def _record(
-    recipes: list[Recipe],
-    path: str | Path,
-    options: WriteOptions,
-    examined: Callable[[list[AccuracyStatus]], None] | None,
-) -> Path:
-    """Record the trajectory of a recipe, or the trajectories of all replicas."""
-    if len(recipes) > 1:
-        return record_together(recipes, path, options, examined)
-    return trajectory.record(recipes[0], path, options)
 
 
 def _with_useful_tally(contents: Contents, request: Until, scene: Scene, engine: Engine) -> Contents:
@@ -231,10 +211,8 @@ def _start(
     replicas: int,
     seed: int | tuple[int, ...],
 ) -> State | None:
-    """Return the initial state of a run; for a file, its last state.
-
-    Raises SceneError if this file is one of the files of the run at `path`, even under another name, because
-    the run would overwrite it.
+    """Return the initial state of a run; for a file, its last state. Raises SceneError if this file is one of
+    the files of the run at `path`, even under another name, because the run would overwrite it.
     """
     paths = replica_paths(_require_path(path), count_of("replicas", replicas, least=1, most=MOST_REPLICAS))
     if not isinstance(initial, str | Path):
@@ -262,9 +240,8 @@ def _request(
     until: Accuracy | list[Accuracy] | tuple[Accuracy, ...] | None,
     at_most: float | None,
 ) -> Until | None:
-    """Return the accuracies that end a run, or None for a run with a duration.
-
-    Raises SceneError for arguments that exclude or require each other.
+    """Return the accuracies that end a run, or None for a run with a duration. Raises SceneError for
+    arguments that exclude or require each other.
     """
     if until is not None:
         if duration is not None:
@@ -293,6 +270,11 @@ def resume(
 
     Without a `duration` the interrupted run whose file is ``<path>.partial`` is continued to its end. With a
     `duration` the complete run at `path` is continued to that time.
+
+    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
+    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
+    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
+    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
 
     Parameters
     ----------
@@ -326,13 +308,6 @@ def resume(
     --------
     run : Begin a run.
 
-    Notes
-    -----
-    The file of an extended run has the same bytes as the file of a single run of this duration. If the run
-    was made with `keep_checkpoint`, the extension starts from its final state, and the extended run has a
-    checkpoint, too. Otherwise the whole run is repeated from its start. The file is replaced when the longer
-    run is complete. To finish an interrupted extension, call `resume` with or without `duration`.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -343,8 +318,9 @@ def resume(
     ...     trajectory.sizes["frame"]
     31
     """
-    examiner = Examiner(examined)
-    options = WriteOptions(checkpoint_seconds, progress, False, examiner, keep_checkpoint)
+    options = WriteOptions(
+        checkpoint_seconds, progress, examiner=Examiner(examined), keep_checkpoint=keep_checkpoint
+    )
     if replica := _replica(path):
         return resume_together(*replica, options, examined, duration)
     if duration is None:

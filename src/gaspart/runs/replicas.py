@@ -62,10 +62,8 @@ def _carry_out(
     options: WriteOptions,
     examined: Examined,
 ) -> None:
-    """Call a function for all replicas in separate processes.
-
-    The function is called with `send`, the arguments in `calls` for one replica, the options, and True if it
-    must report progress.
+    """Call a function for all replicas in separate processes. The function is called with `send`, the
+    arguments in `calls` for one replica, the options, and True if it must report progress.
     """
     reached: dict[int, tuple[float, float, int]] = {}
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 if TYPE_CHECKING:
     from gaspart.scene.scene import Scene
@@ -56,9 +56,8 @@ class Ball(NamedTuple):
         return Ball(self.centre + shift, self.radius)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the interval inside the ball on each line through points (M, d).
-
-        The lines are parallel to an axis. If a line misses the ball, its ends are inf and -inf.
+        """Return the ends of the interval inside the ball on each line through points (M, d). The lines are
+        parallel to an axis. If a line misses the ball, its ends are inf and -inf.
         """
         away = np.delete(points - self.centre, axis, axis=1)
         square = self.radius**2 - (away**2).sum(axis=1)
@@ -71,10 +70,9 @@ class Ball(NamedTuple):
 
 
 class Slab(NamedTuple):
-    """Segment or rectangle, thickened by `distance` in the directions perpendicular to it.
-
-    The segment or rectangle has the corner `start` (d,) and the orthogonal `edges` (K, d) from this corner.
-    It is not extended beyond its ends or edges.
+    """Segment or rectangle, thickened by `distance` in the directions perpendicular to it. The segment or
+    rectangle has the corner `start` (d,) and the orthogonal `edges` (K, d) from this corner. It is not
+    extended beyond its ends or edges.
     """
 
     start: np.ndarray
@@ -94,11 +92,10 @@ class Slab(NamedTuple):
         return Slab(self.start + shift, self.edges, self.distance)
 
     def interval(self, points: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the ends of the interval inside the slab on each line, like `Ball.interval`.
-
-        A point p + t e of the line is inside if two conditions hold. Relative to `start`, its component along
-        each edge, in units of the edge, is between 0 and 1. Its distance from the line or plane of the edges,
-        whose square is a quadratic function of t, is less than `distance`.
+        """Return the ends of the interval inside the slab on each line, like `Ball.interval`. A point p + t e
+        of the line is inside if two conditions hold. Relative to `start`, its component along each edge, in
+        units of the edge, is between 0 and 1. Its distance from the line or plane of the edges, whose square
+        is a quadratic function of t, is less than `distance`.
         """
         from_start = np.array(points)
         from_start[:, axis] = 0.0
@@ -171,10 +168,9 @@ def grown_wall(wall: Wall | Plate, radius: float) -> Body:
 
 
 class Accessible:
-    """Accessible volume and areas of a scene, computed once for each radius.
-
-    A scene with fixed species requires `fixed`, because positions of a species are known only in a run.
-    Without `fixed` SceneError is raised.
+    """Accessible volume and areas of a scene, computed once for each radius. A scene with fixed species
+    requires `fixed`, because positions of a species are known only in a run. Without `fixed` SceneError is
+    raised.
 
     fixed : positions (F, d) and radii (F,) of all fixed particles. Default: the fixed single particles of the
         scene.
@@ -260,9 +256,8 @@ def _meets(body: Body, lower: np.ndarray, upper: np.ndarray) -> bool:
 
 
 def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scene) -> float | None:
-    """Return the total volume of bodies, or None if bodies overlap or leave the box.
-
-    A body may extend beyond a periodic face. Each set of periodic images contributes one volume.
+    """Return the total volume of bodies, or None if bodies overlap or leave the box. A body may extend beyond
+    a periodic face. Each set of periodic images contributes one volume.
     """
     periodic, lengths = np.array(scene.container.periodic), np.array(scene.container.lengths)
     total = 0.0
@@ -280,10 +275,8 @@ def _apart(bodies: list[Body], lower: np.ndarray, upper: np.ndarray, scene: Scen
 def free_fraction(
     parts: list[Ball | Slab], axes: list[int], ends: tuple[np.ndarray, np.ndarray], shift: int
 ) -> float:
-    """Return the mean fraction of the length of `LINES` lines that is outside all bodies.
-
-    The lines are parallel to the first of the `axes`. They are evenly spread over the other axes, and shifted
-    at random.
+    """Return the mean fraction of the length of `LINES` lines that is outside all bodies. The lines are
+    parallel to the first of the `axes`. They are evenly spread over the other axes, and shifted at random.
 
     shift : index of the random shift.
     """
@@ -299,9 +292,8 @@ def free_fraction(
 def free_lengths(
     parts: list[Ball | Slab], points: np.ndarray, axis: int, ends: tuple[np.ndarray, np.ndarray]
 ) -> np.ndarray:
-    """Return the length outside all bodies of each line through points (M, d).
-
-    The lines are parallel to an axis, and extend between the coordinates `ends`, (d,) each.
+    """Return the length outside all bodies of each line through points (M, d). The lines are parallel to an
+    axis, and extend between the coordinates `ends`, (d,) each.
     """
     low, high = (float(end[axis]) for end in ends)
     lines, starts, stops = [], [], []

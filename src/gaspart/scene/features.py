@@ -9,32 +9,26 @@ features in the documentation, follow from this list.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACE_KINDS, FACES
-
-if TYPE_CHECKING:
-    from gaspart.scene.scene import Scene
+from gaspart.scene.composition import Composition
+from gaspart.scene.faces import FACE_KINDS
+from gaspart.scene.surfaces import FACES
 
 
 class Feature(NamedTuple):
-    """Feature of a scene.
-
-    The function value(scene) returns None if the scene does not have the feature.
-    A feature that is a kind of face has a `kind`.
+    """Feature of a scene. The function value(scene) returns None if the scene does not have the feature. A
+    feature that is a kind of face has a `kind`.
     """
 
     meaning: str
     key: str
-    value: Callable[[Scene], Any]
+    value: Callable[[Composition], Any]
     kind: str | None = None
 
-    def refuse(self, scene: Scene, rule: str) -> SceneError:
-        """Return an error about a scene with this feature.
-
-        The error names the key and the face.
-        """
+    def refuse(self, scene: Composition, rule: str) -> SceneError:
+        """Return an error about a scene with this feature. The error names the key and the face."""
         faces = (name for name, face in scene.faces.items() if face.kind == self.kind)
         key = f"faces.{next(faces)}" if self.kind else self.key
         return SceneError(key, self.value(scene), rule)
@@ -43,7 +37,7 @@ class Feature(NamedTuple):
 def _face(kind: str) -> Feature:
     """Return the feature that represents a kind of face."""
 
-    def value(scene: Scene) -> str | None:
+    def value(scene: Composition) -> str | None:
         return kind if any(face.kind == kind for face in scene.faces.values()) else None
 
     return Feature(f"{kind} faces of the container", "faces", value, kind)
@@ -52,7 +46,7 @@ def _face(kind: str) -> Feature:
 def _law(key: str, meaning: str, value: Callable[[Any], Any]) -> Feature:
     """Return the feature for a property of the collision law."""
 
-    def of_scene(scene: Scene) -> Any:
+    def of_scene(scene: Composition) -> Any:
         return value(scene.restitution) if scene.restitution is not None else None
 
     return Feature(meaning, f"restitution.{key}", of_scene)
@@ -166,29 +160,8 @@ EXCLUDED: dict[tuple[str, str], str] = {
 """Pairs of features that exclude each other, with the reason."""
 
 
-def check_features(scene: Scene) -> None:
-    """Raise SceneError if two features of a scene exclude each other."""
-    present = scene.features
-    for (name, other), reason in EXCLUDED.items():
-        if name in present and other in present:
-            raise FEATURES[name].refuse(scene, f"excludes {FEATURES[other].meaning}: {reason}")
-
-
-_STEADY = frozenset(("walls", "polydispersity", "centres_to_walls"))
-"""Features that leave the total kinetic energy of flight at its initial value."""
-
-
-def shares_energy_evenly(scene: Scene) -> bool:
-    """Return True if the kinetic energy of flight is constant, with equal parts in all directions.
-
-    This holds in equilibrium for smooth, elastic particles without a potential or a source of heat.
-    """
-    return scene.features <= _STEADY
-
-
-def row_count(scene: Scene) -> int:
-    """Return the number of rows of impulses.
-
-    There is a row for each species, and one for all single particles.
+def row_count(scene: Composition) -> int:
+    """Return the number of rows of impulses. There is a row for each species, and one for all single
+    particles.
     """
     return len(scene.species) + bool(scene.particles)

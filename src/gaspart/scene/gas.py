@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from gaspart.errors import SceneError
-
-if TYPE_CHECKING:
-    from gaspart.scene.scene import Scene
+from gaspart.scene.composition import Composition
 
 
 @dataclass(frozen=True)
@@ -56,9 +53,8 @@ class Mixture:
         return self.packing_fraction, self.dimension, self.diameters, self.counts
 
     def thin(self, most: int) -> Mixture:
-        """Return a mixture with every k-th size only, so that at most `most` sizes remain.
-
-        This approximation is valid for the sizes of one species.
+        """Return a mixture with every k-th size only, so that at most `most` sizes remain. This approximation
+        is valid for the sizes of one species.
         """
         step = -(-len(self.counts) // most)
         kept = slice(step // 2, None, step)
@@ -66,7 +62,7 @@ class Mixture:
         return Mixture(self.dimension, self.packing_fraction, *sizes, self.temperature)
 
 
-def mixture_of(scene: Scene) -> Mixture | None:
+def mixture_of(scene: Composition) -> Mixture | None:
     """Return the mixture of a scene; see `Scene.mixture`."""
     counts, diameters, masses = [], [], []
     kinds = [kind for kind in scene.kinds if kind.count]
@@ -80,33 +76,3 @@ def mixture_of(scene: Scene) -> Mixture | None:
     energies = (kind.count * kind.initial_temperature(scene.dimension) for kind in kinds)
     parts = tuple(counts), tuple(diameters), tuple(masses)
     return Mixture(scene.dimension, scene.packing_fraction, *parts, sum(energies) / scene.count)
-
-
-def plain_gas(scene: Scene) -> Gas:
-    """Return `Scene.gas`; raise SceneError, with the reason, if the scene is not a plain gas."""
-    if scene.gas is not None:
-        return scene.gas
-    rule = "a gas of equal, smooth and elastic particles alone is needed"
-    _refuse_others(scene, rule, {"centres_to_walls"})
-    raise SceneError("species", len(scene.kinds), f"{rule}: their radii or masses differ")
-
-
-def plain_mixture(scene: Scene) -> Mixture:
-    """Return `Scene.mixture`; raise SceneError, with the reason, if the scene is not a plain mixture."""
-    if scene.mixture is None:
-        rule = "smooth and elastic particles alone are needed"
-        _refuse_others(scene, rule, {"polydispersity", "centres_to_walls"})
-    assert scene.mixture is not None
-    return scene.mixture
-
-
-def _refuse_others(scene: Scene, rule: str, allowed: set[str]) -> None:
-    """Raise SceneError if a scene is empty, or has a feature that is not allowed."""
-    from gaspart.scene.features import FEATURES
-
-    if not scene.count:
-        raise SceneError("count", 0, f"{rule}: the scene is empty")
-    present = scene.features - allowed
-    for name in FEATURES:
-        if name in present:
-            raise FEATURES[name].refuse(scene, f"{rule}, without {FEATURES[name].meaning}")

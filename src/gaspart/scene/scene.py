@@ -30,17 +30,26 @@ from gaspart.keys import (
     vector,
 )
 from gaspart.keys.values import MOST_PARTICLES, finite_vector
+from gaspart.scene.checks import (
+    check_driven,
+    check_faces,
+    check_features,
+    check_open_faces,
+    check_packing,
+    check_region,
+    check_room,
+    check_walls,
+)
 from gaspart.scene.container import Container
-from gaspart.scene.driving import Thermostat, check_driven
-from gaspart.scene.face_checks import check_faces, check_open_faces
 from gaspart.scene.faces import SCHEMA as FACES_SCHEMA
-from gaspart.scene.faces import Surface, key_of, surface_from_dict, surface_to_dict
+from gaspart.scene.faces import surface_from_dict, surface_to_dict
 from gaspart.scene.facts import Facts
-from gaspart.scene.features import FEATURES, check_features
-from gaspart.scene.limits import Nearby, check_packing, check_region, check_room, rounding
-from gaspart.scene.restitution import Restitution
+from gaspart.scene.features import FEATURES
+from gaspart.scene.restitution import Restitution, Thermostat
+from gaspart.scene.sizes import Nearby, rounding
 from gaspart.scene.species import SHARED, Particle, Species
-from gaspart.scene.walls import WALL_RULE, Plate, Wall, check_walls, wall_kind
+from gaspart.scene.surfaces import Surface, key_of
+from gaspart.scene.walls import WALL_RULE, Plate, Wall, wall_kind
 from gaspart.yaml_text import read_yaml, write_yaml
 
 THUMBNAIL = (480, 360)
@@ -185,27 +194,7 @@ class Scene(Facts):
             return
 
     def wall_at(self, position: tuple[float, ...], radius: float) -> str | None:
-        """Return the key of an interior wall that a particle overlaps, or None.
-
-        Parameters
-        ----------
-        position : tuple of float, shape (d,), [length]
-            Position of the particle.
-        radius : float, [length]
-            Radius of the particle.
-
-        Returns
-        -------
-        str or None
-            The key, such as "walls[0]".
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), walls=[gp.Wall((3.0, 1.0), (3.0, 8.0))])
-        >>> scene.wall_at((3.4, 5.0), radius=0.5)
-        'walls[0]'
-        """
+        """Return the key, such as "walls[0]", of an interior wall that a particle overlaps, or None."""
         shifts = [
             (0.0, -length, length) if periodic else (0.0,)
             for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True)
@@ -223,9 +212,8 @@ class Scene(Facts):
         check_room(self.container, self.centres_to_walls, key, particle)
 
     def _check_particle(self, n: int, particle: Particle, earlier: Nearby) -> None:
-        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle.
-
-        The particle is compared only with `earlier` particles.
+        """Raise SceneError for a particle that is outside, or overlaps a wall or another particle. The
+        particle is compared only with `earlier` particles.
         """
         where = f"particles[{n}]"
         finite_vector(f"{where}.position", particle.position, self.dimension)
@@ -247,56 +235,8 @@ class Scene(Facts):
             if self.separation(particle.position, other.position) < contact - slack:
                 raise SceneError(f"{where}.position", particle.position, f"overlaps particles[{m}]")
 
-    def reach(self, radius: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the range of the coordinates of the centre of a particle.
-
-        Parameters
-        ----------
-        radius : float, [length]
-            Radius of the particle.
-
-        Returns
-        -------
-        lower : tuple of float, shape (d,), [length]
-            Lowest coordinates.
-        upper : tuple of float, shape (d,), [length]
-            Highest coordinates.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).reach(radius=0.5)
-        ((0.5, 0.5), (8.5, 8.5))
-        """
-        lower, upper = [], []
-        for length, periodic in zip(self.container.lengths, self.container.periodic, strict=True):
-            margin = 0.0 if periodic or self.centres_to_walls else radius
-            lower.append(margin)
-            upper.append(length - margin)
-        return tuple(lower), tuple(upper)
-
     def separation(self, a: tuple[float, ...], b: tuple[float, ...]) -> float:
-        """Return the distance between two points; on periodic axes, to the nearest image.
-
-        Parameters
-        ----------
-        a : tuple of float, shape (d,), [length]
-            First point.
-        b : tuple of float, shape (d,), [length]
-            Second point.
-
-        Returns
-        -------
-        float
-            The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((10.0, 10.0), boundary="periodic")
-        >>> gp.Scene(box).separation((1.0, 1.0), (9.0, 1.0))
-        2.0
-        """
+        """Return the distance between two points (d,); on periodic axes, to the nearest image."""
         square = 0.0
         for x, y, length, periodic in zip(a, b, self.container.lengths, self.container.periodic, strict=True):
             gap = abs(x - y)
@@ -304,95 +244,20 @@ class Scene(Facts):
         return math.sqrt(square)
 
     def with_particles(self, *particles: Particle) -> Scene:
-        """Return a new scene with these particles added.
-
-        Parameters
-        ----------
-        *particles : Particle
-            Particles to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> disc = gp.Particle(position=(5.0, 5.0), velocity=(1.0, 0.0), radius=1.0)
-        >>> gp.Scene(gp.Container((9.0, 9.0))).with_particles(disc).count
-        1
-        """
+        """Return a new scene with these particles added; raise SceneError if it is impossible."""
         return replace(self, particles=(*self.particles, *particles))
 
     def with_species(self, *species: Species) -> Scene:
-        """Return a new scene with these species added.
-
-        Parameters
-        ----------
-        *species : Species
-            Species to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).with_species(gp.Species(count=20, radius=0.2)).count
-        20
-        """
+        """Return a new scene with these species added; raise SceneError if it is impossible."""
         return replace(self, species=(*self.species, *species))
 
     def with_walls(self, *walls: Wall | Plate) -> Scene:
-        """Return a new scene with these interior walls added.
-
-        Parameters
-        ----------
-        *walls : Wall or Plate
-            Walls to add.
-
-        Returns
-        -------
-        Scene
-            The new scene.
-
-        Raises
-        ------
-        SceneError
-            If the new scene is impossible.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0))).with_walls(gp.Wall((3.0, 1.0), (3.0, 8.0)))
-        >>> len(scene.walls)
-        1
-        """
+        """Return a new scene with these interior walls added; raise SceneError if it is impossible."""
         return replace(self, walls=(*self.walls, *walls))
 
     @property
     def summary(self) -> str:
-        """Summary of the scene in one line: number of particles, container, packing fraction, features.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(count=20, radius=0.2)]).summary
-        '20 discs in 9 x 9, packing fraction 0.031'
-        """
+        """Summary of the scene in one line: number of particles, container, packing fraction, features."""
         kind = {2: "disc", 3: "sphere"}[self.dimension] + ("s" if self.count != 1 else "")
         sides = " x ".join(f"{length:g}" for length in self.container.lengths)
         text = f"{self.count} {kind} in {sides}, packing fraction {self.packing_fraction:.3g}"
@@ -409,19 +274,7 @@ class Scene(Facts):
             return html.escape(f"{self.summary}. {error}")
 
     def to_dict(self) -> dict:
-        """Return the scene as plain lists and mappings, as in a scene file.
-
-        Returns
-        -------
-        dict
-            Keys of the scene with their values.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).to_dict()["container"]
-        {'lengths': [9.0, 9.0], 'boundary': ['wall', 'wall']}
-        """
+        """Return the scene as plain lists and mappings, as in a scene file."""
 
         def plain(value: Any) -> Any:
             if is_dataclass(value):

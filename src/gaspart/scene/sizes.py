@@ -1,18 +1,72 @@
-"""Radii of a polydisperse species: equally probable quantiles of a distribution.
-
-Radii follow from the scene alone, without a seed. Therefore the packing fraction and the moments of the radii
-are exact, and identical in all runs. Only +, -, x, / and the square root are used; their results have the
-same bits on every machine.
-"""
+"""Sizes and positions of particles: volume, closest packing, radii of a polydisperse species, neighbours."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import lru_cache
+from itertools import product
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from gaspart.scene.container import Container
+
+# Volume of a particle and closest packing: one definition for discs and spheres.
+
+
+CLOSE_PACKING = {2: math.pi / math.sqrt(12.0), 3: math.pi / math.sqrt(18.0)}
+"""Packing fraction of the densest arrangement: triangular lattice (2D), face-centred cubic (3D); exact."""
+_UNIT_BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
+
+
+def ball_volume(dimension: int, radius: float = 1.0) -> float:
+    """Return the area of a disc or the volume of a sphere. The area is pi r^2, and the volume is 4 pi r^3 /
+    3.
+    """
+    return _UNIT_BALL[dimension] * radius**dimension
+
+
+_UNITS = 8.0 * 2.0**-52  # tolerance, in units in the last place
+
+
+def rounding(position: Iterable[float], *lengths: float) -> float:
+    """Return the tolerance of prescribed positions. Particles and walls that touch in decimal numbers may
+    overlap in binary numbers, because 0.6 - 0.5 < 0.1 after rounding. The tolerance is a few units in the
+    last place of the largest coordinate.
+    """
+    return _UNITS * max(*map(abs, position), *lengths)
+
+
+class Nearby:
+    """Cells of width `reach` or more, to find positions near a point quickly. Positions are near if their
+    distance is at most `reach`.
+    """
+
+    def __init__(self, container: Container, reach: float) -> None:
+        self._container = container
+        self._sides = [max(1, int(length / reach)) if reach else 1 for length in container.lengths]
+        self._members: dict[tuple[int, ...], list[int]] = {}
+
+    def _cell(self, position: tuple[float, ...]) -> tuple[int, ...]:
+        axes = zip(position, self._container.lengths, self._sides, strict=True)
+        return tuple(min(int(x / length * side), side - 1) for x, length, side in axes)
+
+    def add(self, n: int, position: tuple[float, ...]) -> None:
+        """Add index `n` at a position (d,) inside the container."""
+        self._members.setdefault(self._cell(position), []).append(n)
+
+    def neighbours(self, position: tuple[float, ...]) -> list[int]:
+        """Return the indices of all positions within `reach`, and of some others, in ascending order."""
+        axes = []
+        for at, side, periodic in zip(
+            self._cell(position), self._sides, self._container.periodic, strict=True
+        ):
+            steps = (at - 1, at, at + 1)
+            axes.append({step % side for step in steps} if periodic else {n for n in steps if 0 <= n < side})
+        return sorted(n for cell in product(*axes) for n in self._members.get(cell, ()))
+
 
 DISTRIBUTIONS = ("lognormal", "uniform")
 MOST_UNIFORM = 1.0 / math.sqrt(3.0)
@@ -87,10 +141,9 @@ def normal_quantile(p: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def relative_radii(count: int, polydispersity: float, distribution: str) -> np.ndarray:
-    """Return the radii (count,) divided by their mean, in descending order.
-
-    The radii are the quantiles at (k + 1/2) / count, k = 0, 1 ..., of a distribution whose standard deviation
-    is the polydispersity. They are scaled so that their mean is 1.
+    """Return the radii (count,) divided by their mean, in descending order. The radii are the quantiles at (k
+    + 1/2) / count, k = 0, 1 ..., of a distribution whose standard deviation is the polydispersity. They are
+    scaled so that their mean is 1.
     """
     import numpy as np
 

@@ -13,7 +13,6 @@ from gaspart.keys.values import finite_vector, positive_number
 
 if TYPE_CHECKING:
     from gaspart.scene.container import Container
-    from gaspart.scene.scene import Scene
 
 
 # Moving wall across the container: a piston between two gases.
@@ -48,27 +47,6 @@ def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
         if is_spanning and len(coordinates[axis]) == 1:
             return axis
     return -1
-
-
-def check_moving_wall(scene: Scene) -> None:
-    """Raise SceneError unless a moving wall spans the container and is the only wall."""
-    for n, wall in enumerate(scene.walls):
-        if wall.mass is None:
-            continue
-        key, lengths = f"walls[{n}].mass", scene.container.lengths
-        if len(scene.walls) > 1:
-            raise SceneError(key, wall.mass, "must be the only interior wall, since it moves")
-        if wall.temperature is not None:
-            raise SceneError(
-                key, wall.mass, "excludes a temperature; a wall that moves is smooth and elastic"
-            )
-        axis = crossed_axis(wall, lengths)
-        if axis < 0:
-            rule = "a wall that moves must reach across the whole container, at right angles to an axis"
-            raise SceneError(key, wall.mass, rule)
-        if scene.container.periodic[axis]:
-            rule = f"a wall that moves needs walls across {'xyz'[axis]}, along which it does"
-            raise SceneError(key, wall.mass, rule)
 
 
 _TEMPERATURE = positive("temperature of the wall, from which velocities are drawn; without it it is hard")
@@ -287,19 +265,3 @@ def box_of_walls(lower: tuple[float, ...], upper: tuple[float, ...]) -> tuple[Wa
 def wall_kind(container: Container) -> type[Wall] | type[Plate]:
     """Return the class of interior walls for the dimension of a container."""
     return Wall if container.dimension == 2 else Plate
-
-
-def check_walls(scene: Scene) -> None:
-    """Raise SceneError for an interior wall that does not fit into the scene."""
-    for n, wall in enumerate(scene.walls):
-        if not isinstance(wall, wall_kind(scene.container)):
-            raise SceneError(f"walls[{n}]", wall, WALL_RULE)
-        if scene.centres_to_walls:
-            raise SceneError(
-                "centres_to_walls", True, "excludes interior walls, which stop surfaces of particles"
-            )
-        for key, point in wall.corners.items():
-            inside = zip(point, scene.container.lengths, strict=True)
-            if not all(0.0 <= x <= length for x, length in inside):
-                raise SceneError(f"walls[{n}].{key}", point, "must lie inside the container")
-    check_moving_wall(scene)

@@ -59,9 +59,8 @@ class Boxes:
 
 
 def narrowest_box(scene: Scene) -> float:
-    """Return the smallest allowed side of a box: the largest particle diameter.
-
-    With narrower boxes, contacts would be missed.
+    """Return the smallest allowed side of a box: the largest particle diameter. With narrower boxes, contacts
+    would be missed.
     """
     return 2.0 * scene.largest_radius
 
@@ -204,12 +203,11 @@ _CROWD, _SAMPLE = 32.0, 256
 
 
 def _reach_of_deepest(tree: cKDTree, other: cKDTree, reach: float) -> float:
-    """Return a distance within which the deepest overlap of two size classes is found.
-
-    In usual states this distance is `reach`. If many particles lie on top of each other, memory cannot hold
-    all pairs within `reach`. The distance is then smaller: contact distances in the classes differ by less
-    than a factor of two, so that the pair of deepest overlap has at most twice the distance q of the nearest
-    pair. The result is 0 if two centres coincide.
+    """Return a distance within which the deepest overlap of two size classes is found. In usual states this
+    distance is `reach`. If many particles lie on top of each other, memory cannot hold all pairs within
+    `reach`. The distance is then smaller: contact distances in the classes differ by less than a factor of
+    two, so that the pair of deepest overlap has at most twice the distance q of the nearest pair. The result
+    is 0 if two centres coincide.
     """
     itself = tree is other
     sample = tree.data[:: max(1, tree.n // _SAMPLE)]

@@ -17,7 +17,6 @@ import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels.memory import aligned_zeros
-from gaspart.scene.limits import closest_packing
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.state.boxes import make_boxes, sides_for
@@ -58,6 +57,10 @@ def compress(
 ) -> Packing:
     """Grow the particles of a scene to a packing fraction, or until they jam.
 
+    The algorithm is by B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990). The temperature
+    is reset to 1 every few collisions. If growth is fast, spheres jam at a packing fraction of about 0.64,
+    and discs at 0.84. If growth is slow, they crystallise.
+
     Parameters
     ----------
     scene : Scene
@@ -83,16 +86,6 @@ def compress(
         If the scene has single particles, interior walls or fixed particles, or if the particles jam before
         the requested packing fraction.
 
-    Notes
-    -----
-    The algorithm is by Lubachevsky and Stillinger [1]_. The temperature is reset to 1 every few collisions.
-    If growth is fast, spheres jam at a packing fraction of about 0.64, and discs at 0.84. If growth is slow,
-    they crystallise.
-
-    References
-    ----------
-    .. [1] B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 561 (1990).
-
     Examples
     --------
     >>> import gaspart as gp
@@ -109,7 +102,7 @@ def compress(
         return Packing(np.empty((0, scene.dimension)), 1.0, 0.0, 1.0, 0)
     d = scene.dimension
     unit = scene.packing_fraction
-    target = unit if until is None else closest_packing(scene) if until == "jammed" else until
+    target = unit if until is None else scene.closest_packing if until == "jammed" else until
     end = _root(target / unit, d)
     growing = _Growing(scene, seed, min(end, _root(_START[d] / unit, d)), end)
     while growing.scale < end * (1.0 + _SPARE) and growing.pressure < jammed:
@@ -126,9 +119,8 @@ def compress(
 
 
 def compress_positions(scene: Scene, seed: int | tuple[int, ...]) -> np.ndarray:
-    """Return positions for a scene from compression at the fastest sufficient rate of `RATES`.
-
-    A growth rate is sufficient if the particles reach the packing fraction of the scene before they jam.
+    """Return positions for a scene from compression at the fastest sufficient rate of `RATES`. A growth rate
+    is sufficient if the particles reach the packing fraction of the scene before they jam.
     """
     for rate in RATES[:-1]:
         with suppress(SceneError):
@@ -200,10 +192,7 @@ class _Growing:
             self.pressure = 1.0 + float(tally.sums[self._kernels.VIRIAL].sum()) / (d * n * time)
 
     def final_positions(self, scale: float) -> np.ndarray:
-        """Return the positions (N, d) at a scale.
-
-        Raises SimulationError if two particles overlap.
-        """
+        """Return the positions (N, d) at a scale. Raises SimulationError if two particles overlap."""
         self.flights["radius"] = self._radii * scale
         if self._growth.closest(self.particles, self.boxes, self._space) < 1.0:
             raise SimulationError("growth has left an overlap")

@@ -12,10 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, FLOW, GRADIENT
+from gaspart.scene.boundaries import flow_of_rate
+from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow_of_rate
+from gaspart.scene.surfaces import FACES
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import assemble_state, in_flow, masses_of
@@ -112,9 +113,8 @@ def _in_flow(scene: Scene, other: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _image_displacement(scene: Scene, other: State) -> float | None:
-    """Return the displacement of a state's images; raise SceneError if the scene lacks shear.
-
-    Multiples of the length of the container are subtracted without rounding.
+    """Return the displacement of a state's images; raise SceneError if the scene lacks shear. Multiples of
+    the length of the container are subtracted without rounding.
     """
     here = math.fmod(other.displaced or 0.0, scene.container.lengths[FLOW])
     if scene.shear_rate is not None:
@@ -129,9 +129,8 @@ def _image_displacement(scene: Scene, other: State) -> float | None:
 
 
 def _taken_piston(scene: Scene, other: State) -> np.ndarray | None:
-    """Return position and velocity of the piston in a state; None if there is no piston.
-
-    Raises SceneError if another face is the piston in the scene.
+    """Return position and velocity of the piston in a state; None if there is no piston. Raises SceneError if
+    another face is the piston in the scene.
     """
     if other.piston is None:
         return None
@@ -179,9 +178,8 @@ def check_apart(scene: Scene, state: State) -> None:
 
 
 def _with_images(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions (M, d) and radii (M,) of a sheared gas's particles and images.
-
-    The result includes only images below the gas, and of these only the images that particles may touch.
+    """Return positions (M, d) and radii (M,) of a sheared gas's particles and images. The result includes
+    only images below the gas, and of these only the images that particles may touch.
     """
     near = state.lengths[GRADIENT] - state.positions[:, GRADIENT] <= 2.0 * state.radii.max()
     images = state.positions[near]
@@ -197,10 +195,9 @@ def _wrap_coordinates(values: np.ndarray, lengths: np.ndarray | float) -> np.nda
 
 
 def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None) -> np.ndarray:
-    """Return positions (N, d) inside the container; raise SceneError for a particle outside.
-
-    On periodic axes with images at fixed distances, the returned positions are in [0, L). On other axes they
-    are between the walls or the piston.
+    """Return positions (N, d) inside the container; raise SceneError for a particle outside. On periodic axes
+    with images at fixed distances, the returned positions are in [0, L). On other axes they are between the
+    walls or the piston.
     """
     lengths, periodic = np.array(scene.container.lengths), np.array(scene.image_axes)
     slack = _SINGLE * lengths
@@ -224,11 +221,9 @@ def _inside(scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.n
 def _bounds(
     scene: Scene, positions: np.ndarray, radii: np.ndarray, piston: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and highest coordinates, (N, d) each, that particles may have.
-
-    The bounds follow from the walls and the piston. With a moving interior wall, the bounds of a particle
-    depend on the side of the wall where it is. A particle passes through a sheared face when its centre
-    reaches the face.
+    """Return the lowest and highest coordinates, (N, d) each, that particles may have. The bounds follow from
+    the walls and the piston. With a moving interior wall, the bounds of a particle depend on the side of the
+    wall where it is. A particle passes through a sheared face when its centre reaches the face.
     """
     walled = ~np.array(scene.container.periodic)
     margins = np.where(walled & (not scene.centres_to_walls), radii[:, None], 0.0)

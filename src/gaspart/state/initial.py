@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.faces import FACES, Well
+from gaspart.scene.boundaries import flow
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 from gaspart.scene.species import LATTICES, Species
+from gaspart.scene.surfaces import FACES, Well
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.compression import compress_positions
 from gaspart.state.insertion import per_particle, random_insertion
@@ -118,10 +118,8 @@ def assemble_state(scene: Scene, positions: np.ndarray, velocities: np.ndarray, 
 
 
 def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
-    """Return the name of the face or wall that is a piston, and its motion.
-
-    The motion is an array (2,) of position and velocity at time 0. Without a piston, the function returns
-    (None, None).
+    """Return the name of the face or wall that is a piston, and its motion. The motion is an array (2,) of
+    position and velocity at time 0. Without a piston, the function returns (None, None).
     """
     for n, face in scene.pistons:
         start = scene.container.lengths[n // 2] if n % 2 else 0.0
@@ -131,10 +129,8 @@ def _piston(scene: Scene) -> tuple[str | None, np.ndarray | None]:
 
 
 def _on_lattice(scene: Scene, rng: np.random.Generator, arrangement: str) -> np.ndarray:
-    """Return the positions (N, d) of the arrangement "lattice" or "slab".
-
-    Raises SceneError under the same conditions as `lattice`, and if a particle would overlap an interior
-    wall.
+    """Return the positions (N, d) of the arrangement "lattice" or "slab". Raises SceneError under the same
+    conditions as `lattice`, and if a particle would overlap an interior wall.
     """
     positions = lattice(scene, rng, slab=arrangement == "slab")
     radii = per_particle(scene, "radius").astype(float)
@@ -156,9 +152,8 @@ def _sites(scene: Scene, rng: np.random.Generator) -> dict[int, np.ndarray]:
 
 
 def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
-    """Return advice for a scene whose particles cannot be placed by random insertion.
-
-    The advice names an arrangement only if the particles fit into the container in this arrangement.
+    """Return advice for a scene whose particles cannot be placed by random insertion. The advice names an
+    arrangement only if the particles fit into the container in this arrangement.
     """
     try:
         arranged = replace(scene, species=[replace(kind, arrangement="lattice") for kind in scene.species])
@@ -169,10 +164,8 @@ def _instead_of_random(scene: Scene, seed: int | tuple[int, ...]) -> str:
 
 
 def _vibrations(scene: Scene, rng: np.random.Generator) -> np.ndarray:
-    """Return the energies (N,) of the vibrations.
-
-    An energy is the `vibration` of the scene, or is drawn from the distribution exp(-E/kT)/kT. It is 0 for
-    particles that do not vibrate.
+    """Return the energies (N,) of the vibrations. An energy is the `vibration` of the scene, or is drawn from
+    the distribution exp(-E/kT)/kT. It is 0 for particles that do not vibrate.
     """
     parts = [np.array([particle.vibration or 0.0 for particle in scene.particles])]
     for kind in scene.species:
@@ -225,11 +218,10 @@ def in_flow(scene: Scene, masses: np.ndarray, positions: np.ndarray, velocities:
 
 
 def _make_exact(scene: Scene, velocities: np.ndarray) -> None:
-    """Rescale velocities of the species with `exact_temperature`.
-
-    First, their mean velocity is subtracted along axes with conserved momentum. Then a factor for each group
-    of `_apart` makes the mean of m v^2 / kT per degree of freedom of the group equal to 1. The sums have the
-    same rounding on every machine. Raises SceneError if there is no degree of freedom.
+    """Rescale velocities of the species with `exact_temperature`. First, their mean velocity is subtracted
+    along axes with conserved momentum. Then a factor for each group of `_apart` makes the mean of m v^2 / kT
+    per degree of freedom of the group equal to 1. The sums have the same rounding on every machine. Raises
+    SceneError if there is no degree of freedom.
     """
     first, parts = len(scene.particles), []
     for kind in scene.species:
@@ -314,9 +306,8 @@ _FCC = np.array([[0.0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])
 
 
 def _periods(cells: np.ndarray, walled: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Return the number of lattice cells (d,) that fill the container.
-
-    On an axis with walls, the last half cell contains no particles and is not counted.
+    """Return the number of lattice cells (d,) that fill the container. On an axis with walls, the last half
+    cell contains no particles and is not counted.
     """
     return np.where(walled, np.maximum(cells - 1 + basis.max(axis=0), 0.5), cells)
 

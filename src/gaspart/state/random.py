@@ -47,9 +47,8 @@ def natural_log(x: np.ndarray) -> np.ndarray:
 
 
 def _disc(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return uniform random points (u, v) in the unit disc, and s = u^2 + v^2.
-
-    The centre of the disc is excluded.
+    """Return uniform random points (u, v) in the unit disc, and s = u^2 + v^2. The centre of the disc is
+    excluded.
     """
     us, vs, have = [np.empty(0)], [np.empty(0)], 0
     while have < count:

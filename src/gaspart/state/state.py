@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from gaspart.errors import SceneError
+from gaspart.scene.boundaries import flow
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
 
 
 @dataclass(repr=False)
@@ -110,30 +110,12 @@ class State:
 
     @property
     def count(self) -> int:
-        """Number N of particles.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).count
-        1
-        """
+        """Number N of particles."""
         return len(self.positions)
 
     @property
     def dimension(self) -> int:
-        """Number of dimensions, 2 or 3.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).dimension
-        2
-        """
+        """Number of dimensions, 2 or 3."""
         return self.positions.shape[1]
 
     @property
@@ -158,46 +140,19 @@ class State:
 
     @property
     def speeds(self) -> np.ndarray:
-        """Speeds of the particles, shape (N,), [length/time].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).speeds
-        array([5.])
-        """
+        """Speeds of the particles, shape (N,), [length/time]."""
         return np.sqrt((self.velocities**2).sum(axis=1))
 
     @property
     def kinetic_energies(self) -> np.ndarray:
-        """Translational plus rotational energy of each particle, (N,), [energy]; 0 for fixed particles.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).kinetic_energies
-        array([12.5])
-        """
+        """Translational plus rotational energy of each particle, (N,), [energy]; 0 for fixed particles."""
         flight = _finite(self.masses) * (self.velocities**2).sum(axis=1)
         turning = _finite(self.moments_of_inertia) * self.spins.T**2
         return 0.5 * (flight + (turning if turning.ndim == 1 else turning.sum(axis=0)))
 
     @property
     def momentum(self) -> np.ndarray:
-        """Total momentum, shape (d,), [mass length/time].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).momentum
-        array([3., 4.])
-        """
+        """Total momentum, shape (d,), [mass length/time]."""
         # not @, because BLAS differs between machines
         return (_finite(self.masses)[:, None] * self.velocities).sum(axis=0)
 
@@ -223,30 +178,12 @@ class State:
 
     @property
     def translational_energy(self) -> float:
-        """Kinetic energy of flight of all particles, [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).translational_energy
-        12.5
-        """
+        """Kinetic energy of flight of all particles, [energy]."""
         return 0.5 * float((_finite(self.masses)[:, None] * self.velocities**2).sum())
 
     @property
     def rotational_energy(self) -> float:
-        """Kinetic energy of spin of all particles, [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle((2.0, 5.0), (3.0, 4.0), radius=0.5, spin=2.0)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).rotational_energy
-        0.25
-        """
+        """Kinetic energy of spin of all particles, [energy]."""
         if not self.spins.any():  # equal for smooth particles, and much cheaper
             return 0.0
         return 0.5 * float((_finite(self.moments_of_inertia) * (self.spins**2).T).sum())
@@ -262,15 +199,6 @@ class State:
         ------
         ZeroDivisionError
             If there are fewer than 2 particles.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> first = gp.Particle(position=(2.0, 5.0), velocity=(1.0, 0.0), radius=0.5)
-        >>> second = gp.Particle(position=(7.0, 5.0), velocity=(-1.0, 0.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[first, second]), seed=1).temperature
-        1.0
         """
         momentum = self.momentum
         centre_energy = 0.5 * float((momentum**2).sum()) / float(_finite(self.masses).sum())
@@ -278,16 +206,7 @@ class State:
 
     @property
     def kinetic_energy(self) -> float:
-        """Kinetic energy of flight and spin of all particles, [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).kinetic_energy
-        12.5
-        """
+        """Kinetic energy of flight and spin of all particles, [energy]."""
         return self.translational_energy + self.rotational_energy
 
     @property
@@ -296,15 +215,6 @@ class State:
 
         The energy under gravity is 0 for a centre at the origin. On periodic axes it is computed from
         positions that continue beyond the faces (`unwrapped`).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[disc], gravity=(0.0, -2.0))
-        >>> initial_state(scene, seed=1).potential_energy
-        10.0
         """
         energy = 0.0 if self.well_energies is None else float(self.well_energies.sum())
         if self.gravity is not None:
@@ -313,31 +223,12 @@ class State:
 
     @property
     def vibrational_energy(self) -> float:
-        """Energy of the vibrations of all particles, [energy]; 0 if no particle vibrates.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1).vibrational_energy
-        0.0
-        """
+        """Energy of the vibrations of all particles, [energy]; 0 if no particle vibrates."""
         return 0.0 if self.vibrations is None else float(self.vibrations.sum())
 
     @property
     def energy(self) -> float:
-        """Sum of the kinetic, potential and vibrational energy of all particles, [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[disc], gravity=(0.0, -2.0))
-        >>> initial_state(scene, seed=1).energy
-        22.5
-        """
+        """Sum of the kinetic, potential and vibrational energy of all particles, [energy]."""
         return self.kinetic_energy + self.potential_energy + self.vibrational_energy
 
     def copy(self) -> State:
@@ -372,15 +263,6 @@ class State:
         State
             State with read-only views of the same arrays. They are read-only because a change would not
             affect the simulation.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> from gaspart.state.initial import initial_state
-        >>> disc = gp.Particle(position=(2.0, 5.0), velocity=(3.0, 4.0), radius=0.5)
-        >>> state = initial_state(gp.Scene(gp.Container((10.0, 10.0)), particles=[disc]), seed=1)
-        >>> state.read_only().velocities.flags.writeable
-        False
         """
         state = replace(self)
         for key, value in vars(self).items():

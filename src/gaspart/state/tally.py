@@ -31,6 +31,8 @@ class Tally:
     In the shapes, F is the number of faces: the 2 d faces of the container (x low, x high, y low, ...), then
     the interior walls.
 
+    Literature: E. Helfand, Phys. Rev. 119, 1 (1960).
+
     Parameters
     ----------
     time : float, [time]
@@ -119,10 +121,6 @@ class Tally:
     See Also
     --------
     Simulation : Simulation that has a tally.
-
-    References
-    ----------
-    .. [1] E. Helfand, Phys. Rev. 119, 1 (1960).
 
     Examples
     --------
@@ -298,10 +296,9 @@ class ImpulseTally(OptionalTally):
 
 
 def _require_equilibrium(scene: Scene) -> None:
-    """Raise SceneError if the tallied momentum does not determine the density in a scene.
-
-    The message states the reason. The velocities of particles must be independent of their positions, which
-    holds only in equilibrium at one temperature.
+    """Raise SceneError if the tallied momentum does not determine the density in a scene. The message states
+    the reason. The velocities of particles must be independent of their positions, which holds only in
+    equilibrium at one temperature.
     """
     if len({particle.mass for particle in scene.particles}) > 1:
         rule = "must have one mass for an impulse tally, which sums over all single particles"
@@ -371,9 +368,8 @@ class PairImpulseTally(OptionalTally):
         number("pair_impulses.share", self.share, "must be above 0 and at most 1", above=0.0, most=1.0)
 
     def _require(self, scene: Scene) -> None:
-        """Raise SceneError unless a scene is periodic, large enough, and in equilibrium.
-
-        Equilibrium requires a single temperature.
+        """Raise SceneError unless a scene is periodic, large enough, and in equilibrium. Equilibrium requires
+        a single temperature.
         """
         if not scene.is_periodic:
             rule = "needs a periodic container; set boundary: periodic"

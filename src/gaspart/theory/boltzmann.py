@@ -16,8 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gaspart.theory.geometry import checked_dimension, unit_sphere_surface
-from gaspart.theory.rough import rough_ratio
+from gaspart.theory.geometry import unit_sphere_surface
 
 _FLUXES = {"viscosity": (2, 0), "conductivity": (1, 1)}
 """Rank of the harmonic tensor and order of the Sonine polynomial, for the stress and for the heat flux."""
@@ -76,10 +75,8 @@ def brackets(
 
 
 def _contraction(rank: int, v: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Return the contraction of two harmonic tensors of velocities.
-
-    The contraction is v^l w^l P_l(cos(angle)), where v and w are the magnitudes of the velocities. In two
-    dimensions cos(l angle) replaces P_l.
+    """Return the contraction v^l w^l P_l(cos(angle)) of two harmonic tensors; cos(l angle) replaces P_l in
+    2D.
     """
     from scipy.special import eval_legendre
 
@@ -104,48 +101,15 @@ def flux_relaxation(quantity: str) -> tuple[np.ndarray, np.ndarray]:
 
 # Homogeneous Boltzmann equation of hard spheres and discs, by direct simulation.
 #
-# This program computes results without a closed form. One is the relaxation of a gas in which all particles
-# initially have the same speed; it tests the tables `data/relaxation_2d.csv` and `_3d.csv`. Another is the
-# fourth cumulant of a cooling gas. `data/rough_cooling.csv` and `data/rough_start.csv` contain the
-# temperatures of rough discs that cool, and of rough discs that start without spins. Particles have no
-# positions. Collision partners are drawn at random, which is molecular chaos (Nanbu 1980, Babovsky 1986).
-# `tagged_paths` simulates a particle of another size and mass in such a gas.
+# Particles have no positions. Collision partners are drawn at random, which is molecular chaos (Nanbu 1980,
+# Babovsky 1986). `tagged_paths` simulates a particle of another size and mass in such a gas. In the tests the
+# same steps compute the tables of `data/` for rough discs, and test the tables of relaxation.
 
 
 _SHARE = 0.01
 """Time step times the root-mean-square speed. In a step 0.4 % of the particles collide. Second collisions of
 a particle within a step are neglected; they would be 0.2 % of all collisions.
 """
-
-
-@dataclass(frozen=True)
-class Homogeneous:
-    """Evolution of a homogeneous gas: values at the start and after S - 1 steps."""
-
-    collisions: np.ndarray
-    kurtosis: np.ndarray
-    never_hit: np.ndarray
-    energy: np.ndarray
-
-
-def homogeneous_gas(
-    count: int, dimension: int, collisions: float, restitution: float = 1.0, seed: int = 0
-) -> Homogeneous:
-    """Simulate a gas of particles that start with speed 1 and isotropic directions."""
-    rng, d = np.random.default_rng(seed), checked_dimension(dimension)
-    velocity = directions(rng, count, d)
-    hit = np.zeros(count, dtype=bool)
-    progress, rows = 0.0, [(0.0, 1.0, 1.0, 1.0)]
-    while progress < collisions:
-        i, j, normal, approach = _meetings(rng, velocity)
-        change = 0.5 * (1.0 + restitution) * approach[:, None] * normal
-        velocity[i] -= change
-        velocity[j] += change
-        hit[i] = hit[j] = True
-        progress += 2.0 * len(i) / count
-        square = dot(velocity, velocity)
-        rows.append((progress, (square**2).mean() / square.mean() ** 2, 1.0 - hit.mean(), square.mean()))
-    return Homogeneous(*np.array(rows).T)
 
 
 def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -> np.ndarray:
@@ -164,64 +128,11 @@ def relaxing_speeds(count: int, times: np.ndarray, hits: float, seed: int = 0) -
     return np.array(rows)
 
 
-def rough_discs(
-    count: int, collisions: float, inertia: float, tangential: float, normal: float = 1.0, seed: int = 0
-) -> np.ndarray:
-    """Simulate the ratio of rotational to translational temperature of cooling rough discs."""
-    rng = np.random.default_rng(seed)
-    velocity, spin = rng.standard_normal((count, 2)), rng.standard_normal(count)  # spin: R omega
-    spin *= np.sqrt(rough_ratio(inertia, tangential, normal) / inertia)
-    progress, ratios = 0.0, []
-    while progress < collisions:
-        progress += _rough_step(rng, velocity, spin, inertia, tangential, normal)
-        ratios.append(2.0 * inertia * (spin**2).mean() / dot(velocity, velocity).mean())
-    return np.array(ratios)
-
-
-def rough_start(
-    count: int, collisions: float, inertia: float, seed: int = 0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Simulate perfectly rough discs with initially Maxwellian velocities and zero spins."""
-    rng = np.random.default_rng(seed)
-    velocity, spin = rng.standard_normal((count, 2)), np.zeros(count)
-    start = 0.5 * dot(velocity, velocity).mean()
-    progress, rows = 0.0, [(0.0, 1.0)]
-    while progress < collisions:
-        progress += _rough_step(rng, velocity, spin, inertia, 1.0, 1.0)
-        difference = 0.5 * dot(velocity, velocity).mean() - inertia * (spin**2).mean()
-        rows.append((progress, difference / start))
-    where, differences = np.array(rows).T
-    return where, differences
-
-
-def _rough_step(
-    rng: np.random.Generator,
-    velocity: np.ndarray,
-    spin: np.ndarray,
-    inertia: float,
-    tangential: float,
-    normal: float,
-) -> float:
-    """Advance rough discs by a step in place, and return the number of collisions per disc."""
-    share = inertia * (1.0 + tangential) / (2.0 * inertia + 2.0)
-    i, j, along, approach = _meetings(rng, velocity)
-    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    slip = dot(velocity[i] - velocity[j], across) + spin[i] + spin[j]
-    change = 0.5 * (1.0 + normal) * approach[:, None] * along + share * slip[:, None] * across
-    velocity[i] -= change
-    velocity[j] += change
-    spin[i] -= share / inertia * slip
-    spin[j] -= share / inertia * slip
-    return 2.0 * len(i) / len(velocity)
-
-
 def _meetings(
     rng: np.random.Generator, velocity: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Draw the collisions of a step.
-
-    Returns arrays for the M collisions: the particles i and j (M,), unit normals (M, d), and speeds of
-    approach (M,).
+    """Draw the M collisions of a step: particles i and j (M,), unit normals (M, d) and speeds of approach
+    (M,).
     """
     step = _step(velocity)
     first, second = rng.permutation(len(velocity))[: len(velocity) // 2 * 2].reshape(2, -1)
@@ -303,11 +214,8 @@ def _advance(
     hits: float,
     share: float,
 ) -> None:
-    """Move all spheres for one interval, in place.
-
-    Possible hits are drawn at a rate that exceeds the hit rate of every sphere. Each is accepted with a
-    probability proportional to the speed of approach. So the method has no time step and no error due to a
-    time step.
+    """Move all spheres for one interval, in place. Possible hits are drawn at a rate that exceeds the hit
+    rate of every sphere, and accepted in proportion to the speed of approach, so there is no time step.
     """
     fastest = float(gas.max())
     flying, moving, remaining = np.arange(len(position)), velocity.copy(), np.full(len(position), interval)

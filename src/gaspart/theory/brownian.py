@@ -25,46 +25,10 @@ def friction_rate(
     gas_mass: float = 1.0,
     temperature: Numbers = 1.0,
 ) -> Values:
-    """Compute the initial decay rate of the velocity autocorrelation of a sphere in a gas.
-
-    Parameters
-    ----------
-    number_density : float or ndarray, [1/length^3]
-        Number density n of the gas.
-    contact_distance : float, [length]
-        Distance a of the centres at contact, the sum of both radii.
-    mass : float or ndarray, [mass]
-        Mass M of the particle.
-    gas_mass : float, default 1.0, [mass]
-        Mass of a particle of the gas.
-    temperature : array_like, default 1.0, [energy]
-        Temperature times k_B.
-
-    Returns
-    -------
-    float or ndarray, [1/time]
-        Friction rate.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The rate is (8/3) n a^2 sqrt(2 pi mu k_B T) / M, where mu is the reduced mass of the particle and a gas
-    particle [1]_. This is exact for a dilute gas in equilibrium whose mean free path is much longer than the
-    contact distance.
-
-    References
-    ----------
-    .. [1] S. Chapman and T. G. Cowling, The Mathematical Theory of Non-uniform Gases (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.friction_rate(0.01, contact_distance=3.0, mass=100.0)), 6)
-    0.005986
+    """Compute the initial decay rate of the velocity autocorrelation of a sphere in a gas [1/time]. The rate
+    is (8/3) n a^2 sqrt(2 pi mu k_B T) / M, where mu is the reduced mass of the particle and a gas particle
+    (S. Chapman and T. G. Cowling, The Mathematical Theory of Non-uniform Gases (1970)). This is exact for a
+    dilute gas in equilibrium whose mean free path is much longer than the contact distance.
     """
     reduced = mass * gas_mass / (mass + gas_mass)
     momentum = np.sqrt(2.0 * math.pi * reduced * np.asarray(temperature))
@@ -73,42 +37,9 @@ def friction_rate(
 
 @check_ranges
 def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperature: float = 1.0) -> Values:
-    """Compute the diffusion coefficient of a particle from its friction rate.
-
-    Parameters
-    ----------
-    rate : float or ndarray, [1/time]
-        Friction rate, see `friction_rate`.
-    mass : float, [mass]
-        Mass M of the particle.
-    gas_mass : float, default 1.0, [mass]
-        Mass of a particle of the gas.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-
-    Returns
-    -------
-    float or ndarray, [length^2/time]
-        Diffusion coefficient D.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    D = k_B T / (M rate) by the Langevin equation. If the particle has the same mass as the gas particles, the
-    result is multiplied by 1.01895. For heavier particles the correction is smaller and vanishes in the limit
-    of heavy particles. It is neglected unless the masses are equal.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.tagged_diffusion(rate=0.5, mass=100.0)
-    0.02
-    >>> theory.tagged_diffusion(rate=0.5, mass=1.0)
-    2.0379
+    """Compute the diffusion coefficient of a particle from its friction rate [length^2/time]. D = k_B T / (M
+    rate) by the Langevin equation. If the particle has the same mass as the gas particles, the result is
+    multiplied by 1.01895. The correction of heavier particles is smaller and neglected.
     """
     factor = SONINE_EQUAL_MASSES if mass == gas_mass else 1.0
     return factor * temperature / (mass * rate)
@@ -116,40 +47,9 @@ def tagged_diffusion(rate: Numbers, mass: float, gas_mass: float = 1.0, temperat
 
 @check_ranges
 def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """Compute the mean-squared displacement of a Brownian particle in equilibrium.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t.
-    diffusion : float or ndarray, [length^2/time]
-        Diffusion coefficient D.
-    rate : float or ndarray, [1/time]
-        Friction rate g.
-    dimension : int, default 3
-        Dimension d.
-
-    Returns
-    -------
-    float or ndarray, [length^2]
-        Mean-squared displacement.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The mean-squared displacement is 2 d D [t - (1 - exp(-g t)) / g] (Ornstein and Fuerth). The velocity
-    autocorrelation is assumed to decay exponentially with the rate g. The motion is ballistic at short times,
-    and the result approaches 2 d D t at long times.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.langevin_msd([0.0, 1.0, 100.0], diffusion=1.0, rate=1.0).round(4)
-    array([  0.    ,   2.2073, 594.    ])
+    """Compute the mean-squared displacement of a Brownian particle in equilibrium [length^2]. The
+    mean-squared displacement is 2 d D [t - (1 - exp(-g t)) / g] (Ornstein and Fuerth). The velocity
+    autocorrelation is assumed to decay exponentially with the rate g.
     """
     scaled = rate * np.asarray(time, dtype=float)
     # At small g t, t - (1 - exp(-g t)) / g loses digits. The series g t^2 / 2 (1 - g t / 3 + ...) is used
@@ -161,39 +61,9 @@ def langevin_msd(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: in
 
 @check_ranges
 def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dimension: int = 3) -> Values:
-    """Compute the mean-squared displacement of a Brownian particle that starts at rest.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t since the particle was at rest.
-    diffusion : float or ndarray, [length^2/time]
-        Diffusion coefficient D.
-    rate : float or ndarray, [1/time]
-        Friction rate g.
-    dimension : int, default 3
-        Dimension d.
-
-    Returns
-    -------
-    float or ndarray, [length^2]
-        Mean-squared displacement.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The mean-squared displacement is 2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], from the
-    same Langevin equation as `langevin_msd`. At short times the result is 2 d D g^2 t^3 / 3.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.langevin_msd_from_rest([0.0, 1.0, 100.0], diffusion=1.0, rate=1.0).round(4)
-    array([  0.    ,   1.0085, 591.    ])
+    """Compute the mean-squared displacement of a Brownian particle that starts at rest [length^2]. The
+    mean-squared displacement is 2 d D [t - 2 (1 - exp(-g t)) / g + (1 - exp(-2 g t)) / (2 g)], from the same
+    Langevin equation as `langevin_msd`.
     """
     scaled = rate * np.asarray(time, dtype=float)
     shape = scaled + 2.0 * np.expm1(-scaled) - 0.5 * np.expm1(-2.0 * scaled)
@@ -203,90 +73,22 @@ def langevin_msd_from_rest(time: Numbers, diffusion: Numbers, rate: Numbers, dim
 
 # Buoyancy of a large disc in a fluid of small discs, from scaled-particle theory.
 #
-# The theory gives the work of insertion. In equilibrium, the work of inserting a hard disc depends on the
-# height only through the chemical potential mu(z) = const - m g z of the fluid. The upward force on the disc
-# is therefore m g dW/dmu, which is m g times the number of displaced small discs. This is Archimedes's
-# principle: only the mass of the displaced fluid counts, including adsorption.
+# The work of insertion is W / k_B T = -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2 (E. Helfand,
+# H. L. Frisch and J. L. Lebowitz, J. Chem. Phys. 34, 1037 (1961)). In equilibrium, it depends on the height
+# only through the chemical potential mu(z) = const - m g z of the fluid. The upward force on the disc is
+# therefore m g dW/dmu, which is m g times the number of displaced small discs, by Archimedes's principle:
+# only the mass of the displaced fluid counts, including adsorption.
 
 
 _HIGHEST = 0.7
 
 
 @check_ranges
-def insertion_work(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
-    """Compute the work of inserting a hard disc into a fluid of smaller discs.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta of the fluid, from 0 to 0.7.
-    size_ratio : array_like, [1]
-        Radius s of the inserted disc divided by the radius of a disc of the fluid.
-
-    Returns
-    -------
-    ndarray, [1]
-        Work W divided by k_B T.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    By scaled-particle theory, W / k_B T = -ln(1 - eta) + 2 s eta / (1 - eta) + s^2 eta / (1 - eta)^2 [1]_
-    (tested against the equation of state at s = 1). The last term is the pressure times the area of the disc.
-    The second term, which is proportional to the perimeter, is due to the line tension of the disc's edge.
-
-    References
-    ----------
-    .. [1] E. Helfand, H. L. Frisch and J. L. Lebowitz, J. Chem. Phys. 34, 1037 (1961).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.insertion_work(0.3, size_ratio=5.0)), 4)
-    19.9485
-    """
-    eta = checked_packing_fraction(packing_fraction, _HIGHEST)
-    s = np.asarray(size_ratio, dtype=float)
-    return -np.log1p(-eta) + 2.0 * s * eta / (1.0 - eta) + s**2 * eta / (1.0 - eta) ** 2
-
-
-@check_ranges
 def displaced_area(packing_fraction: Numbers, size_ratio: Numbers) -> Values:
-    """Compute the area of fluid that a large disc displaces.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta of the fluid, from 0 to 0.7.
-    size_ratio : array_like, [1]
-        Radius s of the large disc divided by the radius of a disc of the fluid.
-
-    Returns
-    -------
-    ndarray, [1]
-        Displaced area of fluid divided by the area of a disc of the fluid, (dW/dmu) / eta.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    By scaled-particle theory (see `insertion_work`), the result is s^2 + 2 s (1 - eta) / (1 + eta) + (1 -
-    eta)^2 / (1 + eta). In a dilute gas the result is (s + 1)^2, because centres are excluded within the
-    radius R + r. In a dense fluid the result is smaller, because fluid accumulates at the edge of the disc
-    and fills a part of this margin.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.displaced_area([0.0, 0.3], size_ratio=5.0).round(4)
-    array([36.    , 30.7615])
+    """Compute the area of fluid that a large disc displaces. By scaled-particle theory the result is s^2 + 2
+    s (1 - eta) / (1 + eta) + (1 - eta)^2 / (1 + eta). In a dilute gas the result is (s + 1)^2, because
+    centres are excluded within the radius R + r. In a dense fluid the result is smaller, because fluid
+    accumulates at the edge of the disc and fills a part of this margin.
     """
     eta = checked_packing_fraction(packing_fraction, _HIGHEST)
     s = np.asarray(size_ratio, dtype=float)

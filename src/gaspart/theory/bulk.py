@@ -16,6 +16,7 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.scene.gas import Gas
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, viscosity_ratio
 from gaspart.theory.discretisation import contact_values
 
 EXACT, BOLTZMANN, ENSKOG = "exact", "boltzmann", "enskog"
@@ -50,10 +51,8 @@ def collision_rate(gas: Gas, equation: str) -> float:
 
 
 def diffusion(gas: Gas, equation: str) -> float:
-    """Compute the coefficient of self-diffusion of spheres; NaN for discs.
-
-    For the exact dynamics D is the result of Erpenbeck and Wood. For the other equations it is the
-    coefficient of the kinetic equation.
+    """Compute the coefficient of self-diffusion of spheres (Erpenbeck and Wood, or of the kinetic equation);
+    NaN for discs.
     """
     if gas.dimension == 2 or (equation == EXACT and not _fluid(gas)):
         return math.nan
@@ -62,13 +61,10 @@ def diffusion(gas: Gas, equation: str) -> float:
 
 
 def shear_viscosity(gas: Gas, equation: str) -> float:
-    """Compute the shear viscosity by the theory of Chapman and Enskog, or of Enskog.
-
-    For the exact dynamics of spheres, Enskog's value is multiplied by the ratio measured in dense gases.
-    """
+    """Compute the shear viscosity; for spheres, Enskog's value times the ratio measured in dense gases."""
     value = float(theory.enskog_viscosity(**_enskog_arguments(gas, equation)))
     if equation == EXACT and gas.dimension == 3:
-        return value * float(theory.viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
+        return value * float(viscosity_ratio(gas.packing_fraction)) if _fluid(gas) else math.nan
     return value
 
 
@@ -91,13 +87,12 @@ def chemical_potential(gas: Gas, equation: str) -> float:
 
 def _fluid(gas: Gas) -> bool:
     """Return True if the density is in the range of the transport data for spheres."""
-    return gas.packing_fraction <= theory.ERPENBECK_WOOD_HIGHEST
+    return gas.packing_fraction <= ERPENBECK_WOOD_HIGHEST
 
 
 def _enskog_arguments(gas: Gas, equation: str) -> dict[str, Any]:
-    """Return the arguments of Enskog's transport coefficients.
-
-    The coefficients of point particles do not depend on the density.
+    """Return the arguments of Enskog's coefficients; those of point particles do not depend on the
+    density.
     """
     if equation == BOLTZMANN:
         return {**gas.parameters, "packing_fraction": 0.0, "contact": 1.0}
@@ -125,14 +120,11 @@ def finite_collision_rate(gas: Gas) -> tuple[float, float]:
 
 
 def finite_diffusion(gas: Gas) -> tuple[float, float]:
-    """Compute the relative difference of D between a finite and an infinite container.
-
-    The difference is the correction of Yeh and Hummer. It is inversely proportional to the side length.
-    """
+    """Compute the relative difference of D between a finite and an infinite container (Yeh and Hummer)."""
     fraction, dimension = gas.packing_fraction, gas.dimension
     side = (gas.count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
     value = float(theory.enskog_diffusion(fraction, dimension))
     carried = float(theory.number_density(fraction, dimension)) * value  # modes decay as nu + D
-    viscosity = float(theory.enskog_viscosity(fraction, dimension) * theory.viscosity_ratio(fraction))
+    viscosity = float(theory.enskog_viscosity(fraction, dimension) * viscosity_ratio(fraction))
     lost = theory.yeh_hummer(side, viscosity + carried)
     return -float(lost) / value, float(dimension)

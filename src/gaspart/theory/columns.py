@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.scene.faces import Thermal
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import Thermal
 from gaspart.state.state import State
 from gaspart.theory.geometry import particle_volume
 from gaspart.theory.gravity import hydrostatic_profiles
@@ -68,10 +68,7 @@ class Column:
 
     @property
     def collisions(self) -> float:
-        """Total collision rate, up to a constant factor.
-
-        The value can only be compared between columns of the same scene.
-        """
+        """Total collision rate, up to a factor that columns of the same scene share."""
         contact = 1.0 if self.ideal else contact_value(self.filled, self.dimension)
         speed = np.sqrt(1.0 / self.masses[:, None] + 1.0 / self.masses)
         pairs = np.einsum("iz,jz,ij->z", self.numbers, self.numbers, speed) * contact
@@ -108,9 +105,8 @@ class GravityColumn:
     diameter: float
 
     def column(self, temperature: float, ideal: bool) -> Column:
-        """Compute the column that has a given temperature.
-
-        Raises ValueError if the density exceeds the range of the equation of state of the fluid.
+        """Compute the column of a temperature; ValueError beyond the range of the equation of state of the
+        fluid.
         """
         d, weights = self.dimension, self.masses * self.pull / temperature
         top = min(self.height, self._reaches(temperature))
@@ -125,18 +121,15 @@ class GravityColumn:
         return Column(z, densities * self.area, *shape)
 
     def _reaches(self, temperature: float) -> float:
-        """Return an upper limit of the gas height: a close-packed bed plus an atmosphere.
-
-        The atmosphere consists of the lightest particles.
+        """Return an upper limit of the gas height: a close-packed bed plus an atmosphere of the lightest
+        particles.
         """
         volume = self.counts.sum() * particle_volume(self.dimension, self.diameter) / self.area
         return 2.0 * float(volume) + _SCALES * temperature / float(self.masses.min() * self.pull)
 
     def of_energy(self, energy: float, ideal: bool) -> Column:
-        """Compute the column that has a given total energy.
-
-        Raises ValueError under the conditions of `column`, and if the column has this energy at no
-        temperature.
+        """Compute the column of a total energy; ValueError as for `column`, or if no temperature has this
+        energy.
         """
         if not energy > 0.0:
             raise ValueError(f"energy: {energy} (must be positive)")
@@ -157,19 +150,14 @@ class GravityColumn:
         return float(state.translational_energy + self.pull * (state.masses @ heights))
 
     def equilibrate(self, energy: float, heat: float | None, ideal: bool) -> Column:
-        """Compute the equilibrium column from the temperature of its faces or from its energy.
-
-        `heat` is the temperature of the faces. Without `heat`, the energy determines the column. Raises
-        ValueError under the conditions of `of_energy`.
-        """
+        """Compute the equilibrium column from the temperature `heat` of its faces, or from its energy."""
         return self.column(heat, ideal) if heat else self.of_energy(energy, ideal)
 
 
 def gravity_column(scene: Scene) -> GravityColumn | None:
-    """Return the column of a scene under gravity; None if there is no theory for it.
-
-    Theory covers equal-sized particles that lose no energy, between hard walls or walls at one temperature
-    across gravity. Along a periodic axis gravity drives a flow, and the gas is uniform.
+    """Return the column of a scene under gravity; None if there is no theory for it. Theory covers
+    equal-sized particles that lose no energy, between hard walls or walls at one temperature across gravity.
+    Along a periodic axis gravity drives a flow, and the gas is uniform.
     """
     pull = [(k, g) for k, g in enumerate(scene.gravity or ()) if g]
     kinds = [kind for kind in scene.kinds if kind.count]
@@ -219,10 +207,8 @@ def _value(column: Column, observable: str, top: bool | None) -> float:
 
 
 def compare_columns(real: Column, ideal: Column, observable: str, top: bool | None) -> float:
-    """Compute the relative difference of an observable between a real and an ideal column.
-
-    `top` is used only for a pressure: True for the wall at the top, False for the floor, None for all walls
-    together. For all walls together the result is the maximum over several observables.
+    """Compute the relative difference of an observable between a real and an ideal column. `top` selects the
+    wall of a pressure; None is all walls, for which the result is the maximum over several observables.
     """
     if observable == "pressure" and top is not None:
         return relative_change(observable, real, ideal, real, top)

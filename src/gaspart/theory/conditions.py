@@ -13,9 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from gaspart.scene.faces import Thermal
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
+from gaspart.scene.surfaces import Thermal
 from gaspart.state.state import State
 from gaspart.theory.columns import Column, GravityColumn, compare_columns, gravity_column
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, erpenbeck_wood_ratio
@@ -70,13 +70,11 @@ class Conditions:
 
     @cached_property
     def contact_of_few(self) -> np.ndarray:
-        """Contact value in a gas of N particles, shape (S,); inf if no pair fits.
-
-        A particle of a pair in contact does not exclude volume from itself. So the result is the contact
-        value of the other particles times 1 / (1 - v / V). Here v is the volume from which one particle of
-        the pair excludes the centre of the other. The factor is exact for two particles. To first order in
-        the packing fraction eta of spheres the result is 1 + (5/2 + 3/N) eta: 1 + 4 eta for two particles,
-        and 1 + 5/2 eta for many.
+        """Contact value in a gas of N particles, shape (S,); inf if no pair fits. So the result is the
+        contact value of the other particles times 1 / (1 - v / V). Here v is the volume from which one
+        particle of the pair excludes the centre of the other. The factor is exact for two particles. To first
+        order in the packing fraction eta of spheres the result is 1 + (5/2 + 3/N) eta: 1 + 4 eta for two
+        particles, and 1 + 5/2 eta for many.
         """
         radii, _, numbers = self._kinds
         d, count = self.scene.dimension, self.scene.count
@@ -114,10 +112,8 @@ class Conditions:
 
     @cached_property
     def surfaces(self) -> float:
-        """Fraction of contacts at which a wall takes the place of a neighbour, to first order.
-
-        This fraction is the largest diameter divided by the accessible length, summed over the axes with
-        walls.
+        """Largest diameter over accessible length, summed over walled axes: contacts at which a wall replaces
+        a neighbour.
         """
         sides = np.where(self.scene.container.periodic, math.inf, self.free)
         if self.axis is not None and math.isfinite(sides[self.axis]):
@@ -136,25 +132,21 @@ class Conditions:
 
     @cached_property
     def memory(self) -> float:
-        """Effect of correlated collisions on the transport coefficients of spheres, |D / D_Enskog - 1|.
-
-        For discs the transport coefficients depend on the size of the system, so the value for spheres at the
-        same packing fraction is used as an estimate.
+        """Effect of correlated collisions on the transport coefficients of spheres, |D / D_Enskog - 1|. The
+        value for spheres also estimates discs, whose transport coefficients depend on the size of the system.
         """
         densest = min(float(self.filled.max()), ERPENBECK_WOOD_HIGHEST)
         return abs(float(erpenbeck_wood_ratio(densest)) - 1.0) if densest > 0.0 else 0.0
 
     def of_points(self, observable: str, face: str | None) -> float | None:
-        """Compute the relative difference of an observable between point and finite particles.
-
-        `face` is the wall on which a pressure acts. Returns None if theory does not cover the column.
+        """Compute the relative difference between point and finite particles of an observable; None without
+        theory.
         """
         return compare_columns(*self.columns, observable, self._top(face)) if self.columns else None
 
     def _top(self, face: str | None) -> bool | None:
-        """Return True if a face of the container is at the top of a column.
-
-        Return None for a face that is not perpendicular to the axis of the column.
+        """Return True if a face is at the top of a column, None if it is not perpendicular to the column's
+        axis.
         """
         scene, axis = self.scene, self.axis
         if face is None or axis is None or face[0] != "xyz"[axis] or scene.gravity is None:
@@ -163,10 +155,7 @@ class Conditions:
 
 
 def known_conditions(scene: Scene, start: State) -> Conditions | None:
-    """Compute the local conditions from theory; None if theory does not cover the scene.
-
-    The energy of the scene is computed from the initial state `start`.
-    """
+    """Compute the local conditions from theory; None if theory does not cover the scene."""
     if column := gravity_column(scene):
         try:
             return _of_column(scene, column, start)

@@ -58,38 +58,16 @@ YEH_HUMMER_CONSTANT = 2.837297
 def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
     """Compute the self-diffusion coefficient of spheres divided by Enskog's coefficient.
 
+    D / D_Enskog of the infinite system. The ratio is 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho
+    sigma^3 / sqrt 2 (J. J. Erpenbeck and W. W. Wood, Phys. Rev. A 43, 4254 (1991)). The coefficients were not
+    checked against the paper. The values differ from the table of D in (S. Pieprzyk, M. N. Bannerman, A. C.
+    Branka, M. Chudak and D. M. Heyes, Phys. Chem. Chem. Phys. 21, 6886 (2019)), as quoted by a public script,
+    by at most 0.7 % up to eta = 0.45, and by 2 % at 0.487 (tested).
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        D / D_Enskog of the infinite system.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The ratio is 1 + 0.05403 y + 6.3656 y^2 - 10.9425 y^3 with y = rho sigma^3 / sqrt 2 [1]_. The coefficients
-    were not checked against the paper. The values differ from the table of D in [2]_, as quoted by a public
-    script, by at most 0.7 % up to eta = 0.45, and by 2 % at 0.487 (tested).
-
-    References
-    ----------
-    .. [1] J. J. Erpenbeck and W. W. Wood, Phys. Rev. A 43, 4254 (1991).
-    .. [2] S. Pieprzyk, M. N. Bannerman, A. C. Branka, M. Chudak and D. M. Heyes, Phys. Chem. Chem. Phys. 21,
-       6886 (2019).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.erpenbeck_wood_ratio(0.3)), 4)
-    1.3391
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     y = number_density(eta, 3) / math.sqrt(2.0)
@@ -100,38 +78,14 @@ def erpenbeck_wood_ratio(packing_fraction: Numbers) -> Values:
 def erpenbeck_wood_diffusion(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Compute the self-diffusion coefficient of spheres in the infinite system.
+    """Compute the self-diffusion coefficient of spheres in the infinite system [length^2/time].
+
+    D is the product of `erpenbeck_wood_ratio` and `enskog_diffusion`.
 
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [length^2/time]
-        Self-diffusion coefficient D.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    D is the product of `erpenbeck_wood_ratio` and `enskog_diffusion`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.erpenbeck_wood_diffusion(0.3)), 4)
-    0.2026
     """
     enskog = enskog_diffusion(packing_fraction, 3, diameter, temperature, mass)
     return erpenbeck_wood_ratio(packing_fraction) * enskog
@@ -139,34 +93,9 @@ def erpenbeck_wood_diffusion(
 
 @check_ranges
 def viscosity_ratio(packing_fraction: Numbers) -> Values:
-    """Compute the shear viscosity of spheres divided by Enskog's viscosity.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
-
-    Returns
-    -------
-    float or ndarray, same shape as `packing_fraction`, [1]
-        Ratio of the viscosities.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The ratio was measured by this program. It is interpolated linearly between the rows of
-    `data/viscosity_3d.csv`. It is 1 up to eta = 0.3, where 1.00(1) was measured. The uncertainty is
-    `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.viscosity_ratio([0.1, 0.4]).round(3)
-    array([1.   , 1.122])
+    """Compute the shear viscosity of spheres divided by Enskog's viscosity. The ratio was measured by this
+    program (`data/viscosity_3d.csv`) and is interpolated linearly. It is 1 up to eta = 0.3, where 1.00(1) was
+    measured. The uncertainty is `VISCOSITY_RATIO_UNCERTAINTY`, plus about 2 % between the rows.
     """
     eta = checked_packing_fraction(packing_fraction, ERPENBECK_WOOD_HIGHEST)
     path = Path(__file__).parent / "data" / "viscosity_3d.csv"
@@ -176,7 +105,13 @@ def viscosity_ratio(packing_fraction: Numbers) -> Values:
 
 @check_ranges
 def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) -> Values:
-    """Compute the finite-size correction of the self-diffusion coefficient in a periodic cube.
+    """Compute the finite-size correction of the self-diffusion coefficient in a periodic cube
+    [length^2/time].
+
+    D_infinity - D_L, to be added to D_L. The correction is 2.837297 k_B T / (6 pi viscosity L) (I.-C. Yeh and
+    G. Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract). It is hydrodynamic, so it holds only if the mean
+    free path is much shorter than L. In a gas, the relevant modes decay with nu + D instead of nu. This is
+    equivalent to a viscosity that is larger by rho D.
 
     Parameters
     ----------
@@ -184,34 +119,6 @@ def yeh_hummer(length: Numbers, viscosity: Numbers, temperature: float = 1.0) ->
         Side L of the cubic periodic container.
     viscosity : float or ndarray, [mass/(length time)]
         Shear viscosity: `enskog_viscosity` times `viscosity_ratio`.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-
-    Returns
-    -------
-    float or ndarray, [length^2/time]
-        D_infinity - D_L, to be added to D_L.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The correction is 2.837297 k_B T / (6 pi viscosity L) [1]_. It is hydrodynamic, so it holds only if the
-    mean free path is much shorter than L. In a gas, the relevant modes decay with nu + D instead of nu. This
-    is equivalent to a viscosity that is larger by rho D.
-
-    References
-    ----------
-    .. [1] I.-C. Yeh and G. Hummer, J. Phys. Chem. B 108, 15873 (2004), abstract.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.yeh_hummer(length=10.0, viscosity=2.0), 6)
-    0.007526
     """
     return YEH_HUMMER_CONSTANT * temperature / (6.0 * math.pi * viscosity * length)
 
@@ -226,34 +133,6 @@ def diffusion_in_cube(
 ) -> tuple[float, float]:
     """Compute the self-diffusion coefficient of spheres in a periodic cube, and its uncertainty.
 
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
-    length : float, [length]
-        Side of the cube.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    value : float, [length^2/time]
-        Self-diffusion coefficient D.
-    uncertainty : float, [length^2/time]
-        Standard uncertainty of D.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if the cube is so small that periodic images change the contact
-        value by more than a tenth.
-
-    Notes
-    -----
     D is `erpenbeck_wood_diffusion` minus the shift `yeh_hummer`. The shift is computed for modes that decay
     with nu + D, and with the viscosity from `viscosity_ratio`. The relative uncertainty of the shift is 5 %
     plus two mean free paths divided by the side, but at most a half. The second term matters if the container
@@ -261,6 +140,20 @@ def diffusion_in_cube(
     program.) In a small cube, the periodic images of a particle order the surrounding fluid. The relative
     change of D by this order is twice `finite_size_remainder`. This was tested with the 44 rows of the table
     `small_systems` that are for larger cubes. In this table D is relative to the centre of mass.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction eta, from 0 to 0.4915 (the range of the fluid).
+    length : float, [length]
+        Side of the cube.
+
+    Returns
+    -------
+    value : float, [length^2/time]
+        Self-diffusion coefficient D.
+    uncertainty : float, [length^2/time]
+        Standard uncertainty of D.
 
     Examples
     --------
@@ -297,44 +190,9 @@ def velocity_decay_rate(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the initial decay rate of the velocity autocorrelation.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1/time]
-        Decay rate.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The rate is 2 nu / d, with the collision rate nu from `collision_rate` (exact in equilibrium). In the
-    first Sonine approximation of Enskog theory, D = k_B T / (m rate).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.velocity_decay_rate(0.3, dimension=3)), 4)
-    6.7341
+    """Compute the initial decay rate of the velocity autocorrelation [1/time]. The rate is 2 nu / d, with the
+    collision rate nu from `collision_rate` (exact in equilibrium). In the first Sonine approximation of
+    Enskog theory, D = k_B T / (m rate).
     """
     rate = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
     return 2.0 / dimension * rate
@@ -350,49 +208,18 @@ def enskog_mean_squared_displacement(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the mean-squared displacement of Enskog theory.
+    """Compute the mean-squared displacement of Enskog theory [length^2].
 
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t; it broadcasts with `packing_fraction`.
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, [length^2]
-        Mean-squared displacement.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     2 d int (t - s) C(s) ds with C(s) = (k_B T / m) sum w exp(-r s). The velocity autocorrelation C is the
     solution of the linear Boltzmann equation at Enskog's collision rate, with the rates r and weights w of
     five Sonine polynomials. At long times, where the result is 2 d D t, the accuracy is 6e-5 (2D) or 1e-5
     (3D) of Enskog's D. At short times the error is smaller. Correlated collisions and the long-time tail are
     neglected.
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.enskog_mean_squared_displacement([0.1, 10.0], 0.3, dimension=3).round(4)
-    array([0.0243, 8.9393])
+    Parameters
+    ----------
+    time : array_like, [time]
+        Time t; it broadcasts with `packing_fraction`.
     """
     frequency = collision_rate(packing_fraction, dimension, diameter, temperature, mass, contact)
     total: Values = 0.0
@@ -421,48 +248,10 @@ def velocity_autocorrelation_tail(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the long-time tail of the velocity autocorrelation.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t.
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, [1]
-        The mean of v(0).v(t) divided by the mean of v^2.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode coupling [1]_: the integral over the shear modes of
-    `modes`. D and the kinematic viscosity nu are Enskog's. Range: after 15 to 30 mean free times, and before
-    sound has crossed the container.
-
-    References
-    ----------
-    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.velocity_autocorrelation_tail(5.0, 0.3, dimension=3)), 6)
-    0.001367
+    """Compute the long-time tail of the velocity autocorrelation. The mean of v(0).v(t) divided by the mean
+    of v^2: ((d-1) / (d rho)) [4 pi (D + nu) t]^(-d/2), by mode coupling (M. H. Ernst, E. H. Hauge and J. M.
+    J. van Leeuwen (1970)): the integral over the shear modes of `modes`. D and the kinematic viscosity nu are
+    Enskog's. Range: after 15 to 30 mean free times, and before sound has crossed the container.
     """
     density, spreading = _spreading(packing_fraction, dimension, diameter, temperature, mass)
     amplitude = (dimension - 1) / (dimension * density)
@@ -473,40 +262,17 @@ def velocity_autocorrelation_tail(
 def logarithmic_slope(
     packing_fraction: Numbers, diameter: float = 1.0, temperature: float = 1.0, mass: float = 1.0
 ) -> Values:
-    """Compute the slope of the integrated velocity autocorrelation of discs against ln t.
+    """Compute the slope of the integrated velocity autocorrelation of discs against ln t [length^2/time].
+
+    Slope dD(t) / d ln t, with D(t) the integral of the tail: k_B T / (8 pi m rho (D + nu)), the integral of
+    `velocity_autocorrelation_tail`. See there for the range and the source. In 2D the tail falls as 1/t, so
+    D(t) grows without limit and no diffusion coefficient exists. At very long times, D(t) itself changes the
+    slope. Simulations do not reach such times.
 
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to 0.70.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [length^2/time]
-        Slope dD(t) / d ln t, with D(t) the integral of the tail.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    k_B T / (8 pi m rho (D + nu)), the integral of `velocity_autocorrelation_tail`. See there for the range
-    and the source. In 2D the tail falls as 1/t, so D(t) grows without limit and no diffusion coefficient
-    exists. At very long times, D(t) itself changes the slope. Simulations do not reach such times.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.logarithmic_slope(0.3)), 4)
-    0.0603
     """
     density, spreading = _spreading(packing_fraction, 2, diameter, temperature, mass)
     return temperature / (8.0 * math.pi * mass * density * spreading)

@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.geometry import Numbers, Values
 
 SLOPE, BEND = {2: 0.5625, 3: 1.5}, {2: 0.0, 3: 0.5}

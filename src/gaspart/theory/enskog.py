@@ -42,10 +42,7 @@ def _density_and_contact(
 def _kinetic(
     dilute: float, factor: float, packing_fraction: Numbers, dimension: int, contact: Numbers | None
 ) -> Values:
-    """Compute the kinetic part, (dilute / chi) [1 + factor b chi / (d+2)]^2.
-
-    b is 2^(d-1) times the packing fraction.
-    """
+    """Compute the kinetic part, (dilute / chi) [1 + factor b chi / (d+2)]^2 with b = 2^(d-1) eta."""
     _, contact = _density_and_contact(packing_fraction, dimension, 1.0, contact)
     excess = 2.0 ** (dimension - 1) * np.asarray(packing_fraction) * contact
     return dilute / contact * (1.0 + factor * excess / (dimension + 2)) ** 2
@@ -70,46 +67,12 @@ def collision_rate(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the number of collisions of a particle per time.
+    """Compute the number of collisions of a particle per time [1/time].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1/time]
-        Collision rate nu.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     nu = S rho sigma^(d-1) chi sqrt(k_B T / (pi m)), with S = 2 pi in 2D and 4 pi in 3D. This is 2 rho sigma
     chi sqrt(pi k_B T / m) in 2D and 4 rho sigma^2 chi sqrt(pi k_B T / m) in 3D. The formula is exact in
     equilibrium, apart from the accuracy of chi, because velocities are independent of positions. In a run of
     N particles, nu = 2 N_coll / (N t).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.collision_rate(0.3, dimension=3)), 4)
-    10.1012
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     speed = math.sqrt(temperature / (math.pi * mass))
@@ -120,36 +83,14 @@ def collision_rate(
 def collision_rate_finite_size_factor(packing_fraction: Numbers, dimension: int, count: int) -> Values:
     """Compute the collision rate of N particles divided by its value in the infinite system.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles in a periodic container, with a fixed energy and zero total momentum.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Ratio nu_N / nu.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     The ratio is the product of two factors. The change of the contact value is the canonical Z_N - 1 divided
     by Z - 1, to first order in 1/N (see `finite_size_correction`). The change of the mean relative speed is
     `enskog.approach_factor`.
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.collision_rate_finite_size_factor(0.3, dimension=3, count=100)), 5)
-    1.00188
+    Parameters
+    ----------
+    count : int
+        Number N of particles in a periodic container, with a fixed energy and zero total momentum.
     """
     speeds = approach_factor(dimension, count)
     eta = np.maximum(packing_fraction, 1e-6)  # limit of the ratio, where the excess itself vanishes
@@ -166,41 +107,11 @@ def approach_factor(dimension: int, count: int) -> float:
 def mean_free_path(
     packing_fraction: Numbers, dimension: int, diameter: float = 1.0, contact: Numbers | None = None
 ) -> Values:
-    """Compute the mean path of a particle between collisions.
+    """Compute the mean path of a particle between collisions [length].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [length]
-        Mean free path; infinite at zero density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The mean free path is the mean speed divided by the collision rate: 1 / (sqrt 2 pi rho sigma^2 chi) in 3D,
-    and 1 / (2 sqrt 2 rho sigma chi) in 2D. The formula is exact in equilibrium, apart from the accuracy of
-    chi.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.mean_free_path(0.3, dimension=3)), 4)
-    0.158
+    Mean free path; infinite at zero density. The mean free path is the mean speed divided by the collision
+    rate: 1 / (sqrt 2 pi rho sigma^2 chi) in 3D, and 1 / (2 sqrt 2 rho sigma chi) in 2D. The formula is exact
+    in equilibrium, apart from the accuracy of chi.
     """
     with np.errstate(divide="ignore"):
         rate = collision_rate(packing_fraction, dimension, diameter, contact=contact)
@@ -216,46 +127,13 @@ def enskog_diffusion(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the self-diffusion coefficient of Enskog theory.
+    """Compute the self-diffusion coefficient of Enskog theory [length^2/time].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [length^2/time]
-        Self-diffusion coefficient D; infinite at zero density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1) chi). The constant c, which includes a Sonine factor, is
-    (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D. In 3D the formula is exact at zero density; the module
-    `diffusion` contains the correction at higher density. In 2D the formula is the diffusion coefficient of
-    the Enskog equation. For real discs D does not exist, because D(t) grows as ln t.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.enskog_diffusion(0.3, dimension=3)), 4)
-    0.1513
+    Self-diffusion coefficient D; infinite at zero density. D = c sqrt(k_B T / (pi m)) / (rho sigma^(d-1)
+    chi). The constant c, which includes a Sonine factor, is (3/8) 1.01895 in 3D and (1/2) 1.02710 in 2D. In
+    3D the formula is exact at zero density; the module `diffusion` contains the correction at higher density.
+    In 2D the formula is the diffusion coefficient of the Enskog equation. For real discs D does not exist,
+    because D(t) grows as ln t.
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     first = {2: 0.5, 3: 0.375}[dimension]
@@ -274,45 +152,11 @@ def enskog_bulk_viscosity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the bulk viscosity of Enskog theory.
+    """Compute the bulk viscosity of Enskog theory [mass length^(2-d)/time].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
-        Bulk viscosity.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     The bulk viscosity is (S / d^2) rho^2 sigma^(d+1) chi sqrt(m k_B T / pi), with S = 2 pi in 2D and 4 pi in
     3D. This is exact within the theory. It is the first-order change of the collisional pressure under
     uniform expansion. A pair at contact then has the mean normal velocity sigma div(u) / d.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.enskog_bulk_viscosity(0.3, dimension=3)), 4)
-    0.6431
     """
     density, contact = _density_and_contact(packing_fraction, dimension, diameter, contact)
     thermal = math.sqrt(mass * temperature / math.pi)
@@ -329,47 +173,13 @@ def enskog_viscosity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the shear viscosity of Enskog theory.
+    """Compute the shear viscosity of Enskog theory [mass length^(2-d)/time].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
-        Shear viscosity.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     The viscosity is (eta_0 / chi) [1 + 2 b chi / (d+2)]^2 plus d / (d+2) times the bulk viscosity, where b is
     2^(d-1) times the packing fraction. The dilute value eta_0 is 0.17913 (3D) or 0.28829 (2D), times sqrt(m
     k_B T) / sigma^(d-1). Together this is eta_0 [1/chi + 0.8 b + 0.7615 b^2 chi] in 3D and eta_0 [1/chi + b +
     0.8729 b^2 chi] in 2D (Gass). In 3D the formula is accurate to a few per cent up to a packing fraction of
     0.3. In denser gases the result is too low.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.enskog_viscosity(0.3, dimension=3)), 4)
-    0.7325
     """
     unit = math.sqrt(mass * temperature) / diameter ** (checked_dimension(dimension) - 1)
     kinetic = unit * kinetic_viscosity(packing_fraction, dimension, contact)
@@ -385,42 +195,9 @@ def enskog_longitudinal_viscosity(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the longitudinal viscosity of Enskog theory.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [mass length^(2-d)/time]
-        Viscosity of a flow along an axis that varies along this axis.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The longitudinal viscosity is 2 (d-1)/d times the shear viscosity plus the bulk viscosity. It damps sound.
-    In a gas between a wall and a piston, it produces heat. The heat per volume and time is the longitudinal
-    viscosity times (du/dx)^2.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.enskog_longitudinal_viscosity(0.3, dimension=3)), 4)
-    1.6197
+    """Compute the longitudinal viscosity of Enskog theory [mass length^(2-d)/time]. The longitudinal
+    viscosity is 2 (d-1)/d times the shear viscosity plus the bulk viscosity. It damps sound, and its product
+    with (du/dx)^2 is the heat per volume and time in front of a piston.
     """
     shear = enskog_viscosity(packing_fraction, dimension, diameter, temperature, mass)
     bulk = enskog_bulk_viscosity(packing_fraction, dimension, diameter, temperature, mass)
@@ -436,46 +213,12 @@ def enskog_conductivity(
     mass: float = 1.0,
     contact: Numbers | None = None,
 ) -> Values:
-    """Compute the thermal conductivity of Enskog theory.
+    """Compute the thermal conductivity of Enskog theory [1/(length^(d-2) time)].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-    contact : array_like, [1], optional
-        Pair distribution at contact, chi: the contact value of an equation of state, or 1 for a gas of
-        points. Default: `contact_value`.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1/(length^(d-2) time)]
-        Thermal conductivity, with k_B = 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The conductivity is (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 plus d / (2m) times the bulk viscosity, where
-    b is 2^(d-1) times the packing fraction. The dilute value lambda_0 is 0.67783 (3D) or 1.16192 (2D), times
-    sqrt(T / m) / sigma^(d-1). Together this is lambda_0 [1/chi + 1.2 b + 0.7574 b^2 chi] in 3D and lambda_0
-    [1/chi + 1.5 b + 0.8716 b^2 chi] in 2D.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.enskog_conductivity(0.3, dimension=3)), 4)
-    3.087
+    Thermal conductivity, with k_B = 1. The conductivity is (lambda_0 / chi) [1 + 3 b chi / (d+2)]^2 plus d /
+    (2m) times the bulk viscosity, where b is 2^(d-1) times the packing fraction. The dilute value lambda_0 is
+    0.67783 (3D) or 1.16192 (2D), times sqrt(T / m) / sigma^(d-1). Together this is lambda_0 [1/chi + 1.2 b +
+    0.7574 b^2 chi] in 3D and lambda_0 [1/chi + 1.5 b + 0.8716 b^2 chi] in 2D.
     """
     unit = math.sqrt(temperature / mass) / diameter ** (checked_dimension(dimension) - 1)
     kinetic = unit * kinetic_conductivity(packing_fraction, dimension, contact)
@@ -487,38 +230,16 @@ def enskog_conductivity(
 def transport_finite_size_factor(count: int, dimension: int, quantity: str) -> float:
     """Compute a transport coefficient of N dilute particles divided by its value in the infinite gas.
 
-    Parameters
-    ----------
-    count : int
-        Number N of particles, with a fixed energy and no total momentum.
-    dimension : int
-        Dimension d.
-    quantity : {"viscosity", "conductivity"}
-        Transport coefficient.
-
-    Returns
-    -------
-    float, [1]
-        Ratio of the coefficients.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     With D = d (N - 1), the mean square of the stress is multiplied by (1 - 1/N) D / (D + 2), and the mean
     square of the heat flux by (1 - 1/N)^3 D^2 / ((D + 2)(D + 4)) (from moments of the uniform distribution on
     a sphere, with errors of order 1/N^2). Both fluxes decay more slowly by the factor 1 / (1 - 1/N), because
     a particle has N
     - 1 partners.
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.transport_finite_size_factor(100, dimension=3, quantity="viscosity"), 5)
-    0.99331
+    Parameters
+    ----------
+    count : int
+        Number N of particles, with a fixed energy and no total momentum.
     """
     share, freedom = 1.0 - 1.0 / count, dimension * (count - 1.0)
     if quantity == "viscosity":

@@ -45,10 +45,8 @@ class Energies:
 
 
 def entropy_deficit(shares: np.ndarray, expected: np.ndarray) -> np.ndarray:
-    """Compute the entropy that a gas lacks to equilibrium, per particle and k_B.
-
-    It is the sum of p ln(p/q) over classes of the speed with shares p (..., K) and equilibrium shares q (K,).
-    At fixed energy it is Boltzmann's H less its value in equilibrium.
+    """It is the sum of p ln(p/q) over classes of the speed with shares p (..., K) and equilibrium shares q
+    (K,).
     """
     ratio = np.where(shares > 0.0, shares, expected) / expected
     return (shares * np.log(ratio)).sum(axis=-1)

@@ -66,38 +66,12 @@ LARGEST_REMAINDER = 0.1
 
 @check_ranges
 def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the contact value of two particles in a periodic square or cube.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta of both particles together: up to pi/4 for discs and 0.3702 for spheres. At this
-        limit the side of the container is sqrt(2) diameters.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Density of pairs at contact, averaged over all directions, divided by 2 / V^2.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is exact. The centre of the second particle can be anywhere outside of the spheres of radius
-    sigma around the first particle and its images. So g = V s / (V - v). Here v is the volume of these
-    spheres in the container, and s is the fraction of their surface that no sphere around another image
-    covers. At L >= 2 sigma the spheres do not overlap, and g = 1 / (1 - 2^(d-1) eta).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.pair_contact_value([0.1, 0.3], dimension=3).round(4)
-    array([1.6667, 3.072 ])
+    """Compute the contact value of two particles in a periodic square or cube. Density of pairs at contact,
+    averaged over all directions, divided by 2 / V^2. The centre of the second particle can be anywhere
+    outside of the spheres of radius sigma around the first particle and its images. So g = V s / (V - v).
+    Here v is the volume of these spheres in the container, and s is the fraction of their surface that no
+    sphere around another image covers. At L >= 2 sigma the spheres do not overlap, and g = 1 / (1 - 2^(d-1)
+    eta).
     """
     d = checked_dimension(dimension)
     eta = checked_packing_fraction(packing_fraction, _PAIR_HIGHEST[d])
@@ -117,40 +91,11 @@ def pair_contact_value(packing_fraction: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def finite_size_remainder(packing_fraction: Numbers, dimension: int, side: Numbers) -> Values:
-    """Estimate the relative remainder of a contact value that the expansion in 1/N neglects.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta within the range of `compressibility_factor`.
-    dimension : {2, 3}
-        Discs or spheres.
-    side : array_like, [1]
-        Shortest side of the periodic container, in diameters.
-
-    Returns
-    -------
-    ndarray, [1]
-        Standard deviation of the remainder divided by the contact value.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The standard deviation is exp(a - b L), where a is a polynomial of second order in eta, and ln b a
-    polynomial of first order. Correlations between images at a distance L have the amplitude exp(a) and decay
+    """Estimate the relative remainder of a contact value that the expansion in 1/N neglects. The standard
+    deviation of the remainder over the contact value is exp(a - b L), with polynomials a of second and ln b
+    of first order in eta. Correlations between images at a distance L have the amplitude exp(a) and decay
     with the rate b. The coefficients maximize the likelihood of the differences between the table
-    (`small_systems`) and the expansion. The differences are assumed to be normally distributed with this
-    standard deviation. The differences change sign with the side. The result is infinite below 2.2 diameters.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.finite_size_remainder(0.45, 3, side=5.0).round(4))
-    0.0056
+    (`small_systems`) and the expansion. The result is infinite below 2.2 diameters.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     a0, a1, a2, b0, b1 = _REMAINDER[dimension]
@@ -165,12 +110,17 @@ def finite_contact_value(
 ) -> tuple[float, float]:
     """Compute the contact value of N particles in a periodic container, and its uncertainty.
 
+    For two particles in a square or cube, the closed form is used (`pair_contact_value`). For the particle
+    numbers in the table (`small_systems`), the ratio of the tabulated value to the expansion is interpolated
+    linearly in eta. The uncertainty of the ratio is the difference from an interpolation by a parabola. In
+    all other cases, and also if its uncertainty is smaller, the expansion in 1/N is used
+    (`finite_size_correction`). The uncertainty of the expansion combines the uncertainty of the equation of
+    state, `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
+
     Parameters
     ----------
     packing_fraction : float, [1]
         Packing fraction eta within the range of `compressibility_factor`.
-    dimension : {2, 3}
-        Discs or spheres.
     count : int
         Number of particles, at least 2.
     side : float, [1], optional
@@ -182,20 +132,6 @@ def finite_contact_value(
         Density of pairs at contact divided by N (N - 1) / V^2.
     uncertainty : float, [1]
         Standard uncertainty of the value.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if the uncertainty exceeds a tenth of the value.
-
-    Notes
-    -----
-    For two particles in a square or cube, the closed form is used (`pair_contact_value`). For the particle
-    numbers in the table (`small_systems`), the ratio of the tabulated value to the expansion is interpolated
-    linearly in eta. The uncertainty of the ratio is the difference from an interpolation by a parabola. In
-    all other cases, and also if its uncertainty is smaller, the expansion in 1/N is used
-    (`finite_size_correction`). The uncertainty of the expansion combines the uncertainty of the equation of
-    state, `finite_size_remainder`, and the square of the relative correction for the next order in 1/N.
 
     Examples
     --------
@@ -225,46 +161,10 @@ def finite_contact_value(
 def insertion_potential(
     packing_fraction: float, dimension: int, count: int, side: float
 ) -> tuple[float, float]:
-    """Compute -ln P; P is the probability that a further particle fits at a random position.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta of the particles within the range of `compressibility_factor`.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles in the container.
-    side : float, [1]
-        Shortest side of the periodic container, in diameters.
-
-    Returns
-    -------
-    value : float, [1]
-        Excess chemical potential of N particles by insertion, divided by k_B T.
-    uncertainty : float, [1]
-        Standard uncertainty of the value.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if the uncertainty exceeds a tenth of the value.
-
-    Notes
-    -----
-    The result is the sum of `excess_chemical_potential` and `insertion_finite_size_correction`. Let R be the
-    neglected remainder of Z, which is `finite_size_remainder` times Z - 1. With the free energy F_N of N
-    particles, the difference F_(N+1) - F_N has the remainder R + (integral of R / eta over eta). The
-    uncertainty combines both terms of this remainder, the uncertainty of the equation of state, and the
-    square of the relative correction. For a single particle the result is exact: it excludes the fraction 2^d
-    eta of the container.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> value, uncertainty = theory.insertion_potential(0.2, 3, count=100, side=6.4)
-    >>> round(value, 2), uncertainty < 0.01
-    (2.48, True)
+    """Compute -ln P; P is the probability that a further particle fits at a random position. The result is
+    the sum of `excess_chemical_potential` and `insertion_finite_size_correction`. The uncertainty combines
+    both terms of this remainder, the uncertainty of the equation of state, and the square of the relative
+    correction. For a single particle the result is exact: it excludes the fraction 2^d eta of the container.
     """
     d = checked_dimension(dimension)
     eta = float(checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[d]))
@@ -307,9 +207,8 @@ def _expansion(eta: float, dimension: int, count: int, side: float) -> tuple[flo
 
 
 def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[float, float]]:
-    """Interpolate the contact value between rows of the table, with its uncertainty.
-
-    The result is empty if eta is outside the range of the rows.
+    """Interpolate the contact value and its uncertainty between rows; empty if eta is outside of
+    their range.
     """
     fractions, factors, errors = _factors(dimension, count)
     if len(fractions) < 3 or eta > fractions[-1]:
@@ -324,9 +223,8 @@ def _interpolate_table(eta: float, dimension: int, count: int) -> list[tuple[flo
 
 @cache
 def _factors(dimension: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return packing fractions, and the ratios of tabulated contact values to the expansion.
-
-    The ratios have errors. The first row is the limit 1 at zero density.
+    """Return packing fractions and ratios, with errors, of tabulated contact values to the expansion; first
+    the limit 1.
     """
     rows = small_systems("contact_value", dimension)
     rows = np.sort(rows[rows.count == count], order="packing_fraction")

@@ -33,47 +33,13 @@ def collision_rate_at_speed(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the number of collisions per time of a particle at a given speed.
-
-    Parameters
-    ----------
-    speed : array_like, [length/time]
-        Speed v of the particle.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `speed`, [1/time]
-        Collision rate nu(v).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    nu(v) is `collision_rate` times u divided by the mean relative speed of all pairs. Here u is the mean
-    relative speed between a particle of speed v and partners with Maxwellian velocities. Let the unit of
-    speed be sqrt(2 k_B T / m), and c the speed v in this unit. Then u = exp(-c^2) / sqrt(pi) + (c + 1 / (2
-    c)) erf(c) in 3D. In 2D, u is the mean of Rice's distribution, sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2
-    / 2) + c^2 I_1(c^2 / 2)]. The mean of nu(v) over all speeds is nu. The formula is exact in equilibrium at
-    zero density. At higher density it is multiplied by chi, as in Enskog theory.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.collision_rate_at_speed([0.0, 1.0, 3.0], 0.1, dimension=3).round(4)
-    array([1.2486, 1.447 , 2.6081])
+    """Compute the number of collisions per time of a particle at a given speed [1/time]. nu(v) is
+    `collision_rate` times u divided by the mean relative speed of all pairs. Here u is the mean relative
+    speed between a particle of speed v and partners with Maxwellian velocities. Let the unit of speed be
+    sqrt(2 k_B T / m), and c the speed v in this unit. Then u = exp(-c^2) / sqrt(pi) + (c + 1 / (2 c)) erf(c)
+    in 3D. In 2D, u is the mean of Rice's distribution, sqrt(pi)/2 exp(-c^2 / 2) [(1 + c^2) I_0(c^2 / 2) + c^2
+    I_1(c^2 / 2)]. The formula is exact in equilibrium at zero density. At higher density it is multiplied by
+    chi, as in Enskog theory.
     """
     from scipy.special import erf, ive
 
@@ -99,47 +65,11 @@ def free_time_pdf(
     temperature: float = 1.0,
     mass: float = 1.0,
 ) -> Values:
-    """Compute the probability density of the time between two collisions of a particle.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time t of the free flight.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-    temperature : float, default 1.0, [energy]
-        Temperature times k_B.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `time`, [1/time]
-        Probability density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The density is int f nu(v)^2 exp(-nu(v) t) dv / nu, where f is Maxwell's distribution of speeds and nu(v)
-    is `collision_rate_at_speed`. The distribution of speeds before a collision is f(v) nu(v). The
-    distribution after a collision is the same, because the motion is reversible. The mean of the distribution
-    is 1 / nu. The density decreases more slowly than an exponential, because slow particles collide less
-    often. The integral is computed by Gauss-Legendre quadrature to 1e-9. Consecutive collisions are assumed
-    to be independent. At a packing fraction of 0.05 the shortest flights are 2 % less frequent.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.free_time_pdf([0.0, 1.0], 0.1, dimension=3).round(4)
-    array([1.8404, 0.2909])
+    """Compute the probability density of the time between two collisions of a particle [1/time]. The density
+    is int f nu(v)^2 exp(-nu(v) t) dv / nu, where f is Maxwell's distribution of speeds and nu(v) is
+    `collision_rate_at_speed`. The density decreases more slowly than an exponential, because slow particles
+    collide less often. The integral is computed by Gauss-Legendre quadrature to 1e-9. Consecutive collisions
+    are assumed to be independent. At a packing fraction of 0.05 the shortest flights are 2 % less frequent.
     """
     gas = {"diameter": diameter, "temperature": temperature, "mass": mass}
     points, weights = np.polynomial.legendre.leggauss(_SPEEDS)

@@ -11,7 +11,7 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 # Validation of the arguments of all formulas in this package.
 
@@ -86,70 +86,18 @@ def unit_sphere_surface(dimension: int) -> float:
 
 @check_ranges
 def particle_volume(dimension: int, diameter: float = 1.0) -> float:
-    """Compute the area of a disc or the volume of a sphere.
+    """Compute the area of a disc or the volume of a sphere [length^dimension].
 
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float, [length^dimension]
-        Area or volume v.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     The area of a disc is pi sigma^2 / 4, the volume of a sphere pi sigma^3 / 6 (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.particle_volume(3), 4)
-    0.5236
     """
     return ball_volume(checked_dimension(dimension), 0.5 * diameter)
 
 
 @check_ranges
 def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 1.0) -> Values:
-    """Compute the number of particles per volume from their packing fraction.
+    """Compute the number of particles per volume from their packing fraction [1/length^dimension].
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float or ndarray, same shape as `packing_fraction`, [1/length^dimension]
-        Number density rho.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     rho = eta / v, with v of `particle_volume` (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.number_density(0.3, dimension=3), 4)
-    0.573
     """
     return packing_fraction / particle_volume(dimension, diameter)
 
@@ -158,33 +106,11 @@ def number_density(packing_fraction: Numbers, dimension: int, diameter: float = 
 def packing_fraction(number_density: Numbers, dimension: int, diameter: float = 1.0) -> Values:
     """Compute the fraction of the container's volume that particles occupy.
 
+    eta = rho v, with v of `particle_volume` (exact).
+
     Parameters
     ----------
     number_density : array_like, [1/length^dimension]
         Number of particles per volume, rho.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float or ndarray, same shape as `number_density`, [1]
-        Packing fraction eta.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    eta = rho v, with v of `particle_volume` (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.packing_fraction(0.5, dimension=2), 4)
-    0.3927
     """
     return number_density * particle_volume(dimension, diameter)

@@ -21,40 +21,10 @@ Chem. Eng. Sci. 15, 260 (1961)).
 def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
     """Compute the fourth cumulant of a smooth inelastic gas that cools homogeneously.
 
-    Parameters
-    ----------
-    restitution : array_like, [1]
-        Coefficient of normal restitution e, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `restitution`, [1]
-        Cumulant a2 = d <v^4> / ((d + 2) <v^2>^2) - 1.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-    ValueError
-        If the restitution is out of range.
-
-    Notes
-    -----
-    a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2 (1-e)) [1]_, to first order in a2. Quadrature of
-    the collision integral gives the same to this order (tested). The value is about 0.01 below the results of
-    direct simulation for e < 0.6.
-
-    References
-    ----------
-    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.fourth_cumulant(0.9, dimension=3)), 5)
-    -0.01456
+    Cumulant a2 = d <v^4> / ((d + 2) <v^2>^2) - 1: a2 = 16 (1-e) (1-2e^2) / (9 + 24 d + (8d - 41) e + 30 e^2
+    (1-e)) (T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998)), to first order in a2.
+    Quadrature of the collision integral gives the same to this order (tested). The value is about 0.01 below
+    the results of direct simulation for e < 0.6.
     """
     e, d = checked_restitution(restitution), checked_dimension(dimension)
     return (
@@ -68,40 +38,11 @@ def fourth_cumulant(restitution: Numbers, dimension: int) -> Values:
 def cooling_rate(restitution: Numbers, dimension: int) -> Values:
     """Compute the decrease of ln T per collision of a particle in a cooling smooth gas.
 
-    Parameters
-    ----------
-    restitution : array_like, [1]
-        Coefficient of normal restitution e, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `restitution`, [1]
-        - d ln T / ds, with s collisions of a particle.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-    ValueError
-        If the restitution is out of range.
-
-    Notes
-    -----
-    (1 - e^2) / d (1 + a2 / 4), with a2 of `fourth_cumulant`. The factor (1 - e^2) / d is exact for Maxwellian
-    velocities. Within a few collisions the gas deviates from them. The dissipation per time is 1 + 3 a2 / 16
-    times its Maxwellian value, and the collision rate is 1 - a2 / 16 times its Maxwellian value [1]_.
-
-    References
-    ----------
-    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.cooling_rate(0.9, dimension=3)), 5)
-    0.0631
+    The value is - d ln T / ds, with s collisions of a particle: (1 - e^2) / d (1 + a2 / 4), with a2 of
+    `fourth_cumulant`. The factor (1 - e^2) / d is exact for Maxwellian velocities. Within a few collisions
+    the gas deviates from them. The dissipation per time is 1 + 3 a2 / 16 times its Maxwellian value, and the
+    collision rate is 1 - a2 / 16 times its Maxwellian value (T. P. C. van Noije and M. H. Ernst, Granular
+    Matter 1, 57 (1998)).
     """
     e = checked_restitution(restitution)
     return (1.0 - e**2) / dimension * (1.0 + 0.25 * fourth_cumulant(e, dimension))
@@ -109,37 +50,11 @@ def cooling_rate(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
-    """Compute the cooling rate of N particles divided by its value for many particles.
-
-    Parameters
-    ----------
-    count : array_like
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `count`, [1]
-        Factor of `cooling_rate`.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    d N / (d (N - 1) + 1), with the temperature T relative to the centre of mass. Relative velocities have the
-    variance 2T N / (N - 1). At a fixed energy, the velocities are uniformly distributed on a sphere in D = d
-    (N - 1) dimensions. The mean energy loss per contact is then D / (D + 1) times its value for Maxwellian
-    velocities (exact for nearly elastic contacts, which do not change this distribution).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.cooling_rate_finite_size_factor(100, dimension=3)), 5)
-    1.00671
+    """Compute the cooling rate of N particles divided by its value for many particles. d N / (d (N - 1) + 1),
+    with the temperature T relative to the centre of mass. At a fixed energy, the velocities are uniformly
+    distributed on a sphere in D = d (N - 1) dimensions. The mean energy loss per contact is then D / (D + 1)
+    times its value for Maxwellian velocities (exact for nearly elastic contacts, which do not change this
+    distribution).
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (freedoms + dimension) / (freedoms + 1.0)
@@ -147,91 +62,27 @@ def cooling_rate_finite_size_factor(count: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def haff_time(restitution: Numbers, dimension: int, collision_rate: Numbers) -> Values:
-    """Compute the characteristic time of Haff's law of cooling.
+    """Compute the characteristic time of Haff's law of cooling [time].
+
+    Time t_H of T = T_0 / (1 + t / t_H)^2. The temperature changes by d ln T = -`cooling_rate` ds, and the
+    collision rate is proportional to sqrt(T) (P. K. Haff, J. Fluid Mech. 134, 401 (1983)). So 1 / t_H is half
+    of `cooling_rate` times the collision rate, which is 1 - a2 / 16 times the elastic rate.
 
     Parameters
     ----------
-    restitution : array_like, [1]
-        Coefficient of normal restitution e, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
     collision_rate : float or ndarray, [1/time]
         Collision rate of a particle in the elastic gas at the initial temperature T_0.
-
-    Returns
-    -------
-    float or ndarray, [time]
-        Time t_H of T = T_0 / (1 + t / t_H)^2.
-
-    Raises
-    ------
-    SceneError
-        If the dimension or the collision rate is out of range.
-    ValueError
-        If the restitution is out of range.
-
-    Notes
-    -----
-    The temperature changes by d ln T = -`cooling_rate` ds, and the collision rate is proportional to sqrt(T)
-    [1]_. So 1 / t_H is half of `cooling_rate` times the collision rate, which is 1 - a2 / 16 times the
-    elastic rate.
-
-    References
-    ----------
-    .. [1] P. K. Haff, J. Fluid Mech. 134, 401 (1983).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.haff_time(0.9, dimension=3, collision_rate=2.0)), 4)
-    15.8328
     """
     slowed = 1.0 - fourth_cumulant(restitution, dimension) / 16.0
     return 2.0 / (cooling_rate(restitution, dimension) * slowed * collision_rate)
 
 
 def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of a smooth inelastic gas in the steady state under white noise.
-
-    Parameters
-    ----------
-    restitution : array_like, [1]
-        Coefficient of normal restitution e, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `restitution`, [1]
-        Cumulant a2, as defined in `fourth_cumulant`.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-    ValueError
-        If the restitution is out of range.
-
-    See Also
-    --------
-    finite_size_cumulant : Fourth cumulant of few particles.
-
-    Notes
-    -----
-    a2 = 16 (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) [1]_. Derived again (tested): the
-    moments are mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2 + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)).
-    The condition mu_4 = (d+2) mu_2 gives this formula, and mu_4 = (d+2) (1 + a2) mu_2 gives
-    `fourth_cumulant`.
-
-    References
-    ----------
-    .. [1] T. P. C. van Noije and M. H. Ernst, Granular Matter 1, 57 (1998).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.driven_cumulant(0.9, dimension=3)), 5)
-    -0.01179
+    """Compute the fourth cumulant of a smooth inelastic gas in the steady state under white noise. a2 = 16
+    (1-e) (1-2e^2) / (73 + 56 d - (24 d + 105) e + 30 e^2 (1-e)) (T. P. C. van Noije and M. H. Ernst, Granular
+    Matter 1, 57 (1998)). Derived again (tested): the moments are mu_2 ~ 1 + 3 a2/16 and mu_4 ~ d + 3/2 + e^2
+    + a2 (3 (10 d + 39 + 10 e^2)/32 + (d-1)/(1-e)). The condition mu_4 = (d+2) mu_2 gives this formula, and
+    mu_4 = (d+2) (1 + a2) mu_2 gives `fourth_cumulant`.
     """
     e, d = checked_restitution(restitution), checked_dimension(dimension)
     below = 73.0 + 56.0 * d - (24.0 * d + 105.0) * e + 30.0 * e**2 * (1.0 - e)
@@ -240,39 +91,10 @@ def driven_cumulant(restitution: Numbers, dimension: int) -> Values:
 
 @check_ranges
 def finite_size_cumulant(cumulant: Numbers, count: Numbers, dimension: int) -> Values:
-    """Compute the fourth cumulant of N particles from its value for many particles.
-
-    Parameters
-    ----------
-    cumulant : array_like, [1]
-        Fourth cumulant a2 of many particles.
-    count : array_like
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, [1]
-        Cumulant d <v^4> / ((d + 2) <(v^2)^2>) - 1 of N particles.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    (1 + a2) D / (D + 2) - 1 with D = d (N - 1). <(v^2)^2> is the time average of the squared mean of v^2 over
-    the particles. Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed
-    energy, the velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order
-    a2/N.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.finite_size_cumulant(0.0, count=100, dimension=3)), 5)
-    -0.00669
+    """Compute the fourth cumulant of N particles from its value for many particles. (1 + a2) D / (D + 2) - 1
+    with D = d (N - 1). <(v^2)^2> is the time average of the squared mean of v^2 over the particles.
+    Velocities are relative to the centre of mass. The formula is exact for a2 = 0: at a fixed energy, the
+    velocities are uniformly distributed on a sphere in D dimensions. Corrections are of the order a2/N.
     """
     freedoms = checked_dimension(dimension) * (np.asarray(count, dtype=float) - 1.0)
     return (1.0 + np.asarray(cumulant)) * freedoms / (freedoms + 2.0) - 1.0
@@ -284,52 +106,24 @@ def driven_temperature(
 ) -> Values:
     """Compute the steady temperature of a smooth inelastic gas that is heated by white noise.
 
-    Parameters
-    ----------
-    restitution : array_like, [1]
-        Coefficient of normal restitution e, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
-    power : array_like, [1]
-        Power that each particle receives, in units of mass = diameter = 1.
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-
-    Returns
-    -------
-    ndarray, [1]
-        Temperature T of the gas of mass 1 and diameter 1; infinite for e = 1.
-
-    Raises
-    ------
-    SceneError
-        If the dimension or the packing fraction is out of range.
-    ValueError
-        If the restitution is out of range.
-
-    Notes
-    -----
-    Contacts dissipate (1 - e^2)/2 nu T (1 + 3 a2/16) per particle and time, where nu = nu_1 sqrt(T) is
-    Enskog's collision rate of the elastic gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)).
+    Temperature T of the gas of mass 1 and diameter 1; infinite for e = 1. Contacts dissipate (1 - e^2)/2 nu T
+    (1 + 3 a2/16) per particle and time, where nu = nu_1 sqrt(T) is Enskog's collision rate of the elastic
+    gas: T^(3/2) = 2 power / ((1 - e^2) nu_1 (1 + 3 a2/16)).
 
     The formula also holds for N particles, with T relative to the centre of mass defined by N - 1. Kicks that
     conserve the momentum transfer the power (1 - 1/N) to each particle, and each particle has N - 1 partners
     instead of N. (This is for dilute gases. The energy fluctuates by 0.8 to 1.2 times as much as in
     equilibrium, which changes the mean of T^(3/2) by at most 0.1/N.) Molecular chaos is assumed: velocities
     are uncorrelated before contacts. Because of the kicks, pairs that have just collided and lost their
-    relative velocity can collide again. The kicks also drive long waves, which renormalise T [1]_. T is 1 %
-    higher for discs with e = 0.4 at a packing fraction of 0.01. At 0.001 the difference is below the
-    resolution of 0.2 %.
+    relative velocity can collide again. The kicks also drive long waves, which renormalise T (T. P. C. van
+    Noije, M. H. Ernst, E. Trizac and I. Pagonabarraga, Phys. Rev. E 59, 4326 (1999)). T is 1 % higher for
+    discs with e = 0.4 at a packing fraction of 0.01. At 0.001 the difference is below the resolution of 0.2
+    %.
 
-    References
+    Parameters
     ----------
-    .. [1] T. P. C. van Noije, M. H. Ernst, E. Trizac and I. Pagonabarraga, Phys. Rev. E 59, 4326 (1999).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.driven_temperature(0.9, dimension=3, power=1.0, packing_fraction=0.1)), 4)
-    3.2925
+    power : array_like, [1]
+        Power that each particle receives, in units of mass = diameter = 1.
     """
     rate = collision_rate(packing_fraction, dimension)
     e = checked_restitution(restitution)

@@ -16,7 +16,9 @@ from gaspart.theory.tables import packing_fraction_at
 
 @check_ranges
 def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
-    """Compute the probability density of the height of a particle of an ideal gas.
+    """Compute the probability density of the height of a particle of an ideal gas [1/length].
+
+    w e^{-w z} / (1 - e^{-w height}) (exact; canonical).
 
     Parameters
     ----------
@@ -26,26 +28,6 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
         Largest height that a centre can reach.
     weight : float, [1/length]
         Reduced weight w = m g / (k_B T).
-
-    Returns
-    -------
-    ndarray, same shape as `z`, [1/length]
-        Probability density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    w e^{-w z} / (1 - e^{-w height}) (exact; canonical).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.ideal_profile([0.0, 1.0], height=10.0, weight=0.5).round(4)
-    array([0.5034, 0.3053])
     """
     z = np.asarray(z, dtype=float)
     if weight == 0.0:
@@ -55,34 +37,8 @@ def ideal_profile(z: Numbers, height: float, weight: float) -> Values:
 
 @check_ranges
 def ideal_mean_height(height: float, weight: Numbers) -> Values:
-    """Compute the mean height of the particles of an ideal gas.
-
-    Parameters
-    ----------
-    height : float, [length]
-        Largest height that a centre can reach.
-    weight : array_like, [1/length]
-        Reduced weight w = m g / (k_B T).
-
-    Returns
-    -------
-    ndarray, same shape as `weight`, [length]
-        Mean height; height / 2 without a field.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1/w - height / (e^x - 1) with x = w height (exact; canonical).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.ideal_mean_height(10.0, [0.0, 0.5]).round(4)
-    array([5.    , 1.9322])
+    """Compute the mean height of the particles of an ideal gas [length]: 1/w - height / (e^x - 1), x = w
+    height (exact).
     """
     x = np.asarray(weight, dtype=float) * height
     small = np.abs(x) < 1e-4  # both terms cancel here; the next term is x^3 / 720
@@ -92,35 +48,9 @@ def ideal_mean_height(height: float, weight: Numbers) -> Values:
 
 @check_ranges
 def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
-    """Compute the heat capacity of an ideal gas under gravity in a box.
-
-    Parameters
-    ----------
-    x : array_like, [1]
-        Reduced height x = m g height / (k_B T).
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `x`, [1]
-        C_V / (N k_B).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    d/2 + 1 - x^2 e^x / (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2 + 1 in a box
-    much higher than the gas, because the potential energy also increases with T.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.ideal_heat_capacity([0.0, 2.0, 100.0], dimension=3).round(4)
-    array([1.5   , 1.7759, 2.5   ])
+    """Compute the heat capacity of an ideal gas under gravity in a box. C_V / (N k_B): d/2 + 1 - x^2 e^x /
+    (e^x - 1)^2 (exact; canonical). This is d/2 without gravity. It is d/2 + 1 in a high box, because the
+    potential energy also increases with T.
     """
     x = np.asarray(x, dtype=float)
     half = np.where(x == 0.0, 1.0, 0.5 * x)
@@ -131,52 +61,11 @@ def ideal_heat_capacity(x: Numbers, dimension: int) -> Values:
 def ideal_energy_moments(
     energy: float, count: int, height: float, force: float, dimension: int, points: int = 2**14
 ) -> tuple[float, float]:
-    """Compute mean and variance of the kinetic energy of an ideal gas at fixed total energy.
-
-    Parameters
-    ----------
-    energy : float, [energy]
-        Kinetic plus potential energy of all particles; the floor has potential energy 0.
-    count : int
-        Number N of particles.
-    height : float, [length]
-        Largest height that a centre can reach.
-    force : float, [energy/length]
-        Weight m g of a particle.
-    dimension : {2, 3}
-        Discs or spheres.
-    points : int, default 2**14
-        Number of points of the grid of potential energies.
-
-    Returns
-    -------
-    mean : float, [energy]
-        Mean kinetic energy <K>.
-    variance : float, [energy^2]
-        Variance of the kinetic energy.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If the energy is not positive.
-
-    Notes
-    -----
-    The result is exact. The number of states with potential energy U is proportional to p(U) (E - U)^{dN/2 -
-    1}. Here p is the density of a sum of N independent potential energies, each uniform between 0 and force *
-    height. There are walls on all sides, so no momentum is conserved. p is computed by Fourier transform, as
-    the N-fold convolution of a single density times e^{-bU}. The factor e^{-bU} moves the peak to the right
-    energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> / (dN) and, for many
-    particles, the heat capacity, see `lebowitz_percus_verlet`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> mean, variance = theory.ideal_energy_moments(100.0, count=50, height=10.0, force=0.5, dimension=2)
-    >>> round(mean, 3), round(variance, 3)
-    (50.848, 23.264)
+    """Compute mean and variance of the kinetic energy of an ideal gas at fixed total energy. The number of
+    states with potential energy U is proportional to p(U) (E - U)^{dN/2 - 1}. Here p is the density of a sum
+    of N independent potential energies, each uniform between 0 and force * height. The factor e^{-bU} moves
+    the peak to the right energy, and the factor e^{bU} is restored afterwards. Both moments give T = 2 <K> /
+    (dN) and, for many particles, the heat capacity, see `lebowitz_percus_verlet`.
     """
     top = force * height
     freedom = 0.5 * checked_dimension(dimension) * count
@@ -206,9 +95,8 @@ def ideal_energy_moments(
 
 
 def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
-    """Return the temperature at which an ideal-gas particle has this mean energy, by bisection.
-
-    `top` is m g height.
+    """Return the temperature at which an ideal-gas particle has this mean energy, by bisection; `top` is m g
+    height.
     """
     half = 0.5 * dimension
     low, high = 0.5 * energy / (half + 1.0), energy / half
@@ -223,42 +111,9 @@ def _canonical_temperature(energy: float, top: float, dimension: int) -> float:
 
 @check_ranges
 def lebowitz_percus_verlet(mean: Numbers, variance: Numbers, count: int, dimension: int) -> Values:
-    """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy.
-
-    Parameters
-    ----------
-    mean : float or ndarray, [energy]
-        Mean of the kinetic energy K.
-    variance : float or ndarray, [energy^2]
-        Variance of the kinetic energy.
-    count : int
-        Number N of particles.
-    dimension : int
-        Dimension d.
-
-    Returns
-    -------
-    float or ndarray, [1]
-        C_V / (N k_B).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N [1]_ (tested against an exact case).
-
-    References
-    ----------
-    .. [1] J. L. Lebowitz, J. K. Percus and L. Verlet, Phys. Rev. 153, 250 (1967).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.lebowitz_percus_verlet(mean=50.0, variance=25.0, count=50, dimension=2)
-    2.0
+    """Compute the heat capacity from the fluctuations of the kinetic energy at fixed total energy. C_V / (N
+    k_B): <dK^2> = (d/2) N T^2 (1 - (d/2) N k_B / C_V), to leading order in 1/N (J. L. Lebowitz, J. K. Percus
+    and L. Verlet, Phys. Rev. 153, 250 (1967)) (tested against an exact case).
     """
     half = 0.5 * dimension
     relative = variance / (half * count * (mean / (half * count)) ** 2)
@@ -271,6 +126,11 @@ def hydrostatic_profiles(
 ) -> np.ndarray:
     """Compute the density profiles of species of equal size from hydrostatics.
 
+    The chemical potential of every species is uniform: ln eta_i + mu_excess(eta) + w_i z = c_i. Here eta is
+    the packing fraction of all particles, and mu_excess follows from the reference equation of state. The sum
+    of these equations is dP/dz = -sum of m_i g rho_i. This is a local approximation. It is accurate if the
+    density changes little over a diameter (error of order (w diameter)^2).
+
     Parameters
     ----------
     z : ndarray, shape (Z,), [length]
@@ -280,29 +140,11 @@ def hydrostatic_profiles(
         the last height.
     weights : array_like, shape (S,), [1/length]
         Reduced weight w_i = m_i g / (k_B T) of a particle, for each species.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
 
     Returns
     -------
     ndarray, shape (S, Z), [1/length^d]
         Number densities. The integral of each density by the trapezoidal rule is its number.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If no such column exists.
-
-    Notes
-    -----
-    The chemical potential of every species is uniform: ln eta_i + mu_excess(eta) + w_i z = c_i. Here eta is
-    the packing fraction of all particles, and mu_excess follows from the reference equation of state. The sum
-    of these equations is dP/dz = -sum of m_i g rho_i. This is a local approximation. It is accurate if the
-    density changes little over a diameter (error of order (w diameter)^2).
 
     Examples
     --------

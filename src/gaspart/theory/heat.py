@@ -46,8 +46,8 @@ METAL_GAP, METAL_BEND, METAL_BEND_ERROR = 10.0, 0.044, 0.0046
 """Gap, in mean free paths, between walls at temperatures 2 and 1. The second number is the second-order
 coefficient of the temperature of electrons among scatterers with modes, as a function of position divided by
 the gap, without the outermost tenths. The third number is its standard error. The values were computed by the
-program `electrons`: 10 metals of 20 000 electrons, for 800 or 1200 mean free times. The coefficient is 0.037
-for a linear T^0.85, and -0.12 for a linear T^(3/2) of a gas.
+program `tests/theory/electrons.py`: 10 metals of 20 000 electrons, for 800 or 1200 mean free times.
+The coefficient is 0.037 for a linear T^0.85, and -0.12 for a linear T^(3/2) of a gas.
 """
 
 
@@ -65,57 +65,26 @@ def free_molecular_flux(
     components: str = "all",
     accommodation: tuple[float, float] = FULL,
 ) -> Values:
-    """Compute the heat flux through a gas whose particles collide only with the walls.
+    """Compute the heat flux through a gas whose particles collide only with the walls [energy/(length^(d-1)
+    time)].
+
+    (d + 1) n sqrt(T_1 T_2 / (2 pi m)) (sqrt T_1 - sqrt T_2), exact (closed form). A particle carries (d + 1)
+    T / 2 from a wall. If a wall changes only the normal component (R. Frederickx and P. Meerts (2010)), a
+    particle carries T. Then the flux is multiplied by 2 / (d + 1), 1/2 in 3D and 2/3 in 2D. With partial
+    accommodation (J. C. Maxwell (1879)), the flux at the same hit rate is multiplied by a_1 a_2 / (a_1 + a_2
+    - a_1 a_2). The returned flux is for the same density. It is multiplied by a_1 a_2 (sqrt T_1 + sqrt T_2) /
+    (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1), because most particles have the temperature of the wall
+    with the larger accommodation.
 
     Parameters
     ----------
     density : float or ndarray, [1/length^d]
         Mean number density n.
-    hot : float, [energy]
-        Temperature T_1 of the hot wall.
-    cold : float, [energy]
-        Temperature T_2 of the cold wall.
-    dimension : {2, 3}
-        Discs or spheres.
-    mass : float, default 1.0, [mass]
-        Mass of a particle.
     components : {"all", "normal"}, default "all"
         Components of the velocity that a wall changes.
     accommodation : tuple of float, default (1.0, 1.0), [1]
         Accommodation coefficients a_1 and a_2 of the hot and the cold wall: fractions of particles that
         receive a new velocity; the others are reflected specularly.
-
-    Returns
-    -------
-    float or ndarray, [energy/(length^(d-1) time)]
-        Heat flux at this mean density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    KeyError
-        If `components` is unknown.
-
-    Notes
-    -----
-    (d + 1) n sqrt(T_1 T_2 / (2 pi m)) (sqrt T_1 - sqrt T_2), exact (closed form). A particle carries (d + 1)
-    T / 2 from a wall. If a wall changes only the normal component [1]_, a particle carries T. Then the flux
-    is multiplied by 2 / (d + 1), 1/2 in 3D and 2/3 in 2D. With partial accommodation [2]_, the flux at the
-    same hit rate is multiplied by a_1 a_2 / (a_1 + a_2 - a_1 a_2). The returned flux is for the same density.
-    It is multiplied by a_1 a_2 (sqrt T_1 + sqrt T_2) / (a_1 (2 - a_2) sqrt T_2 + a_2 (2 - a_1) sqrt T_1),
-    because most particles have the temperature of the wall with the larger accommodation.
-
-    References
-    ----------
-    .. [1] R. Frederickx and P. Meerts (2010).
-    .. [2] J. C. Maxwell (1879).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.free_molecular_flux(0.01, hot=2.0, cold=1.0, dimension=3)), 6)
-    0.009348
     """
     carried = {"all": checked_dimension(dimension) + 1, "normal": 2}[components]
     roots = np.sqrt(hot * cold) * (np.sqrt(hot) - np.sqrt(cold))
@@ -127,40 +96,10 @@ def free_molecular_flux(
 
 @check_ranges
 def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float = 1.0) -> float:
-    """Compute the heat flux through dilute spheres in a wide gap from Fourier's law.
-
-    Parameters
-    ----------
-    length : float, [length]
-        Width of the gap.
-    hot : float, [energy]
-        Temperature T_1 of the hot wall.
-    cold : float, [energy]
-        Temperature T_2 of the cold wall.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float, [energy/(length^2 time)]
-        Heat flux of spheres of mass 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity lambda_0 proportional to sqrt T.
-    The formula is exact in the limit of a wide gap and a dilute gas, apart from the accuracy of lambda_0. It
-    does not depend on the density (Maxwell 1860).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.dilute_fourier_flux(100.0, hot=2.0, cold=1.0)), 6)
-    0.008262
+    """Compute the heat flux through dilute spheres in a wide gap from Fourier's law [energy/(length^2 time)].
+    Heat flux of spheres of mass 1: (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length, with the conductivity
+    lambda_0 proportional to sqrt T. The formula is exact in the limit of a wide gap and a dilute gas, apart
+    from the accuracy of lambda_0. It does not depend on the density (Maxwell 1860).
     """
     conductivity = enskog_conductivity(0.0, 3, diameter, 1.0)
     return 2.0 / 3.0 * conductivity * (hot**1.5 - cold**1.5) / length
@@ -168,48 +107,12 @@ def dilute_fourier_flux(length: float, hot: float, cold: float, diameter: float 
 
 @check_ranges
 def interpolated_flux(length: float, density: float, hot: float, cold: float, diameter: float = 1.0) -> float:
-    """Compute the heat flux through dilute spheres between two walls at any Knudsen number.
-
-    Parameters
-    ----------
-    length : float, [length]
-        Width of the gap.
-    density : float, [1/length^3]
-        Mean number density.
-    hot : float, [energy]
-        Temperature of the hot wall.
-    cold : float, [energy]
-        Temperature of the cold wall.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float, [energy/(length^2 time)]
-        Heat flux of spheres of mass 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1 / (1 / free + 1 / fluid), where `free` is the flux of free molecular flow (`free_molecular_flux`) and
-    `fluid` the flux of Fourier's law without temperature jumps (`dilute_fourier_flux`) [1]_. The formula is
-    correct in both limits and an approximation between them. For small temperature differences, it is 4 %
-    above the flux with temperature jumps at a Knudsen number of 0.1, and 7 % above the flux of the DSMC
-    engine at a Knudsen number of 1 (`INTERPOLATED`).
-
-    References
-    ----------
-    .. [1] F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.interpolated_flux(100.0, density=0.01, hot=2.0, cold=1.0)), 6)
-    0.004386
+    """Compute the heat flux through dilute spheres between two walls at any Knudsen number [energy/(length^2
+    time)]. Heat flux of spheres of mass 1: 1 / (1 / free + 1 / fluid), where `free` is the flux of free
+    molecular flow (`free_molecular_flux`) and `fluid` the flux of Fourier's law without temperature jumps
+    (`dilute_fourier_flux`) (F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963)). For small temperature
+    differences, it is 4 % above the flux with temperature jumps at a Knudsen number of 0.1, and 7 % above the
+    flux of the DSMC engine at a Knudsen number of 1 (`INTERPOLATED`).
     """
     fluid = dilute_fourier_flux(length, hot, cold, diameter)
     free = float(free_molecular_flux(density, hot, cold, 3))
@@ -246,47 +149,21 @@ def conducting_slab(
 ) -> Slab:
     """Compute the profiles of spheres between walls from Fourier's law with temperature jumps.
 
+    Positions, temperatures and number densities, and the heat flux, for spheres of mass 1: q = -lambda(n, T)
+    dT/dx with Enskog's conductivity and a uniform pressure n T Z(eta) (computed numerically). In the dilute
+    limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) - T_2^(3/2)) / length (closed
+    form). At each wall, the temperature of the gas differs from the temperature of the wall by the jump. The
+    errors are of second order in the Knudsen number. The Knudsen layer next to a wall, about a mean free path
+    thick, is not described.
+
     Parameters
     ----------
     length : float, [length]
         Width of the gap.
     density : float, [1/length^3]
         Mean number density.
-    hot : float, [energy]
-        Temperature T_1 of the hot wall.
-    cold : float, [energy]
-        Temperature T_2 of the cold wall.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
     jump : float, default `TEMPERATURE_JUMP`, [1]
         Temperature jump at a wall, in mean free paths times dT/dx.
-
-    Returns
-    -------
-    Slab
-        Positions, temperatures and number densities, and the heat flux, for spheres of mass 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If the Knudsen number is above 0.1.
-
-    Notes
-    -----
-    q = -lambda(n, T) dT/dx with Enskog's conductivity and a uniform pressure n T Z(eta) (computed
-    numerically). In the dilute limit, without jumps, T^(3/2) is linear and q = (2/3) lambda_0 (T_1^(3/2) -
-    T_2^(3/2)) / length (closed form). At each wall, the temperature of the gas differs from the temperature
-    of the wall by the jump. The errors are of second order in the Knudsen number. The Knudsen layer next to a
-    wall, about a mean free path thick, is not described.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.conducting_slab(10.0, density=0.001, hot=2.0, cold=1.0)
-    Traceback (most recent call last):
-    ValueError: density: 0.001 (a Knudsen number of 22; this holds up to 0.1)
     """
     knudsen = float(mean_free_path(packing_fraction(density, 3, diameter), 3, diameter)) / length
     if knudsen > 0.1:
@@ -328,30 +205,7 @@ def _slab_without_jumps(length: float, density: float, hot: float, cold: float, 
 
 
 class Shock(NamedTuple):
-    """Steady shock, behind which the gas moves with the piston.
-
-    Parameters
-    ----------
-    speed : float, [length/time]
-        Speed of the front in the gas at rest.
-    packing_fraction : float, [1]
-        Packing fraction behind the front.
-    temperature : float, [energy]
-        Temperature k_B T behind the front.
-    pressure : float, [energy/length^dimension]
-        Pressure behind the front.
-
-    See Also
-    --------
-    shock_before_piston : Compute the shock of a piston.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> shock = theory.shock_before_piston(0.01, dimension=3, speed=2.0)
-    >>> round(shock.speed, 4), round(shock.temperature, 4)
-    (3.317, 2.7518)
-    """
+    """Steady shock, behind which the gas moves with the piston."""
 
     speed: float
     packing_fraction: float
@@ -370,38 +224,19 @@ def shock_before_piston(
 ) -> Shock:
     """Compute the shock in front of a piston that moves into a gas at rest.
 
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction of the gas at rest: up to 0.70 for discs, 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    speed : float, [length/time]
-        Speed u of the piston, above 0.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T_0 of the gas at rest.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    Shock
-        Speed of the front and state behind it.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if the gas behind the front is denser than the range of the
-        equation of state.
-
-    Notes
-    -----
     The jump conditions of Rankine and Hugoniot for a front with velocity D, in the frame of the gas at rest,
     are: mass n (D - u) = n_0 D, momentum P - P_0 = m n_0 D u, energy d (T - T_0) / 2 = (P + P_0) (1/n_0 -
     1/n) / 2. The equation of state is P = n T Z (`compressibility_factor`). For a steady shock the equation
     of state is the only approximation.
+
+    Parameters
+    ----------
+    packing_fraction : float, [1]
+        Packing fraction of the gas at rest: up to 0.70 for discs, 0.539 for spheres.
+    speed : float, [length/time]
+        Speed u of the piston, above 0.
+    temperature : float, default 1.0, [energy]
+        Temperature k_B T_0 of the gas at rest.
 
     Examples
     --------

@@ -29,40 +29,19 @@ def mixture_chemical_potentials(
 ) -> np.ndarray:
     """Compute the excess chemical potential of each species of a mixture.
 
+    The derivative of F = N k_B T int_0^eta (Z - 1) / eta' d eta' with respect to N_i at constant volume
+    (exact thermodynamics), with Z of `mixture_compressibility_factor`.
+
     Parameters
     ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species, in any unit.
     fractions : array_like, shape (S,), optional, [1]
         Number fractions, which are normalised. Default: equal. A fraction may be 0: a species at infinite
         dilution.
-    theory : {"santos", "linear", "boublik"}, default "santos"
-        Equation of state, as for `mixture_compressibility_factor`.
 
     Returns
     -------
     ndarray, shape (S,), [1]
         Potentials mu_i / k_B T, relative to an ideal gas.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, as for `mixture_compressibility_factor`.
-
-    Notes
-    -----
-    The derivative of F = N k_B T int_0^eta (Z - 1) / eta' d eta' with respect to N_i at constant volume
-    (exact thermodynamics), with Z of `mixture_compressibility_factor`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.mixture_chemical_potentials(0.3, 3, [1.0, 2.0]).round(3)
-    array([1.969, 6.307])
     """
     parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, fractions, theory)
     return _gradient(free_energy, parts, _STEP * unit)
@@ -71,51 +50,14 @@ def mixture_chemical_potentials(
 def mixture_insertion_correction(
     packing_fraction: float, dimension: int, diameters: Sizes, counts: Sizes, theory: str = "santos"
 ) -> np.ndarray:
-    """Compute the shift of the insertion potential of a mixture due to finite particle numbers.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species, in any unit.
-    counts : array_like, shape (S,)
-        Numbers of particles of the species.
-    theory : {"santos", "linear", "boublik"}, default "santos"
-        Equation of state, as for `mixture_compressibility_factor`.
-
-    Returns
-    -------
-    ndarray, shape (S,), [1]
-        -ln P_i - mu_i / k_B T to first order in the inverse numbers, in a periodic container. P_i is the
-        probability that a random position in the container is free for one more particle of species i.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, as for `mixture_compressibility_factor`.
-
-    See Also
-    --------
-    insertion_finite_size_correction : Correction for equal particles, with which this result agrees (tested).
-
-    Notes
-    -----
-    -ln P_i is the change of the free energy when one particle is added. For finite numbers the free energy is
-    F + (1/2) ln(det G / prod N_a). Here G are the covariances of the numbers in an open container. The
-    formula follows from the saddle point of the grand partition function, as in
-    `state.finite_size_correction`. In an ideal gas G is diagonal and equal to the numbers. With the matrix H
-    of second derivatives of F relative to the ideal gas, the result is
+    """Compute the shift of the insertion potential of a mixture due to finite particle numbers. -ln P_i is
+    the change of the free energy when one particle is added. For finite numbers the free energy is F + (1/2)
+    ln(det G / prod N_a). Here G are the covariances of the numbers in an open container. The formula follows
+    from the saddle point of the grand partition function, as in `state.finite_size_correction`. In an ideal
+    gas G is diagonal and equal to the numbers. With the matrix H of second derivatives of F relative to the
+    ideal gas, the result is
 
         H_ii / 2 - (1/2) d ln det(1 + N H) / dN_i,    where N is the diagonal matrix of the numbers.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.mixture_insertion_correction(0.3, 3, [1.0, 2.0], [50, 50]).round(4)
-    array([0.0038, 0.0738])
     """
     parts, unit, free_energy = _free_energy(packing_fraction, dimension, diameters, counts, theory)
     step = _STEP * unit
@@ -134,11 +76,8 @@ def mixture_insertion_correction(
 def _free_energy(
     packing_fraction: float, dimension: int, diameters: Sizes, fractions: Sizes | None, theory: str
 ) -> tuple[np.ndarray, np.ndarray, Callable[[np.ndarray], float]]:
-    """Return fractions (S,), units of changes (S,), and F / k_B T as a function of numbers (S,).
-
-    The volume is constant. It is chosen such that F is per particle if the numbers are equal to the
-    fractions. F depends on moments of the diameters. A unit of change is the number of particles of a species
-    that doubles a moment.
+    """Return fractions (S,), units of changes (S,) and F / k_B T of numbers (S,); a unit doubles a moment of
+    the diameters.
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     powers = (sizes / sizes.max()) ** np.arange(dimension + 1)[:, None]
@@ -182,32 +121,8 @@ def percus_yevick_partial_factors(
     wave_number: Numbers, packing_fraction: float, diameters: Sizes, fractions: Sizes | None = None
 ) -> np.ndarray:
     """Compute the partial structure factors of a mixture of spheres, by Percus and Yevick's equation.
-
-    Parameters
-    ----------
-    wave_number : array_like, [1/length]
-        Wave numbers k, in inverse units of the diameters.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions, all positive. Default: equal.
-
-    Returns
-    -------
-    ndarray, shape (..., S, S), [1]
-        S_ab(k) = <rho_a(k) rho_b(-k)> / sqrt(N_a N_b) of each pair of species. In an ideal gas it is 1 for
-        equal species and 0 otherwise.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Lebowitz's solution [1]_ in Baxter's factorised form [2]_. The inverse matrix is Q^H Q with
+    Lebowitz's solution (J. L. Lebowitz, Phys. Rev. 133, A895 (1964)) in Baxter's factorised form (R. J.
+    Baxter, J. Chem. Phys. 52, 4559 (1970)). The inverse matrix is Q^H Q with
 
         Q_ab = delta_ab - 2 pi sqrt(rho_a rho_b) int q_ab(r) e^{ikr} dr from (sigma_a - sigma_b) / 2 to
         sigma_ab,
@@ -219,18 +134,6 @@ def percus_yevick_partial_factors(
     and xi_n = (pi / 6) sum rho sigma^n. The sum of sqrt(x_a x_b) S_ab is S(k) of all particles. Tested: for
     equal spheres the result is S(k) of `percus_yevick_structure_factor`, and k = 0 gives the Percus-Yevick
     compressibility.
-
-    References
-    ----------
-    .. [1] J. L. Lebowitz, Phys. Rev. 133, A895 (1964).
-    .. [2] R. J. Baxter, J. Chem. Phys. 52, 4559 (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.percus_yevick_partial_factors(0.0, 0.3, [1.0, 2.0]).round(4)
-    array([[ 1.0234, -0.2561],
-           [-0.2561,  0.1557]])
     """
     eta, sizes, parts = checked_mixture("santos", packing_fraction, 3, diameters, fractions)
     k = np.asarray(wave_number, dtype=float)[..., None, None, None]
@@ -257,32 +160,10 @@ def dilute_mixture_conductivity(
     temperature: float = 1.0,
     masses: Numbers | Sizes = 1.0,
 ) -> float:
-    """Compute the thermal conductivity of a dilute mixture of spheres, without diffusion.
-
-    Parameters
-    ----------
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions x, which are normalised. Default: equal.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    masses : float or array_like, shape (S,), default 1.0, [mass]
-        Masses of the particles: a number for all species, or one for each.
-
-    Returns
-    -------
-    float, [1/(length time)]
-        Conductivity kappa, with k_B = 1. The unit of length is the unit of the diameters.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The first approximation of Chapman and Enskog [1]_ is kappa = -4 x L^-1 x with
+    """Compute the thermal conductivity of a dilute mixture of spheres, without diffusion [1/(length time)].
+    Conductivity kappa, with k_B = 1. The unit of length is the unit of the diameters. The first approximation
+    of Chapman and Enskog (C. Muckenfuss and C. F. Curtiss, J. Chem. Phys. 29, 1273 (1958)) is kappa = -4 x
+    L^-1 x with
 
         L_ii = -4 x_i^2 / kappa_i - sum_k x_i x_k c_ik (15/2 m_i^2 + 13/4 m_k^2 + 4 m_i m_k),
 
@@ -293,18 +174,8 @@ def dilute_mixture_conductivity(
         n D_ik = 3 / (8 sigma_ik^2) sqrt(k_B T / (2 pi mu_ik)), with the reduced mass mu_ik.
 
     The ratios A and B of collision integrals are 1 for spheres. For two species the result was tested against
-    the formula of Hirschfelder, Curtiss and Bird [2]_. For one species, higher approximations add 2.5 %.
-
-    References
-    ----------
-    .. [1] C. Muckenfuss and C. F. Curtiss, J. Chem. Phys. 29, 1273 (1958).
-    .. [2] J. O. Hirschfelder, C. F. Curtiss and R. B. Bird (1954), Eq. 8.2-36.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.dilute_mixture_conductivity([1.0, 2.0], masses=[1.0, 4.0]), 4)
-    0.1959
+    the formula of Hirschfelder, Curtiss and Bird (J. O. Hirschfelder, C. F. Curtiss and R. B. Bird (1954),
+    Eq. 8.2-36). For one species, higher approximations add 2.5 %.
     """
     _, sizes, parts = checked_mixture("santos", 0.1, 3, diameters, fractions)
     mass = np.broadcast_to(np.asarray(masses, dtype=float), sizes.shape)

@@ -77,9 +77,8 @@ def _numbers(name: str, values: Sizes) -> np.ndarray:
 
 
 def _moment(parts: np.ndarray, sizes: np.ndarray, power: int) -> float:
-    """Return the mean of a power of the diameters, with a single rounding.
-
-    Sums of BLAS depend on the processor, and this mean determines the lengths of runs.
+    """Return the mean of a power of the diameters, with a single rounding. Sums of BLAS depend on the
+    processor, and this mean determines the lengths of runs.
     """
     return math.fsum(parts * np.prod([sizes] * power, axis=0)) if power else math.fsum(parts)
 
@@ -94,54 +93,19 @@ def mixture_compressibility_factor(
 ) -> float:
     """Compute the compressibility factor Z of a mixture.
 
+    Z = 1 + 2^(d-1) eta sum_ij x_i x_j sigma_ij^d g_ij / <sigma^d> (virial theorem, exact), with the contact
+    values of `mixture_contact_values`. "boublik" is the equation of Boublik (T. Boublik, J. Chem. Phys. 53,
+    471 (1970)) and of Mansoori, Carnahan, Starling and Leland (G. A. Mansoori and others, J. Chem. Phys. 54,
+    1523 (1971)) (tested against its closed form). "linear" is the equation of Santos, Yuste and Lopez de Haro
+    (A. Santos, S. B. Yuste and M. Lopez de Haro, Mol. Phys. 96, 1 (1999)); in two dimensions "santos" gives
+    the same Z (tested).
+
     Parameters
     ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species, in any unit.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions x, which are normalised. Default: equal.
     theory : {"santos", "linear", "boublik"}, default "santos"
         Theory of the contact values; "boublik" exists for spheres only.
     pure : float, optional, [1]
         Contact value of equal particles at this packing fraction. Default: the reference, `contact_value`.
-
-    Returns
-    -------
-    float, [1]
-        Compressibility factor Z.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range. The packing fraction ends at the limit of the reference equation of
-        the pure fluid.
-
-    See Also
-    --------
-    mixture_contact_values : Contact values of each pair of species.
-
-    Notes
-    -----
-    Z = 1 + 2^(d-1) eta sum_ij x_i x_j sigma_ij^d g_ij / <sigma^d> (virial theorem, exact), with the contact
-    values of `mixture_contact_values`. "boublik" is the equation of Boublik [1]_ and of Mansoori, Carnahan,
-    Starling and Leland [2]_ (tested against its closed form). "linear" is the equation of Santos, Yuste and
-    Lopez de Haro [3]_; in two dimensions "santos" gives the same Z (tested).
-
-    References
-    ----------
-    .. [1] T. Boublik, J. Chem. Phys. 53, 471 (1970).
-    .. [2] G. A. Mansoori and others, J. Chem. Phys. 54, 1523 (1971).
-    .. [3] A. Santos, S. B. Yuste and M. Lopez de Haro, Mol. Phys. 96, 1 (1999).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(round(theory.mixture_compressibility_factor(0.3, 3, [1.0, 2.0]), 4))
-    3.5108
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
@@ -171,16 +135,16 @@ def mixture_contact_values(
 ) -> np.ndarray:
     """Compute the pair distribution at contact of each pair of species of a mixture.
 
+    - "boublik": 1 / (1 - eta) + (3/2) eta z / (1 - eta)^2 + (1/2) eta^2 z^2 / (1 - eta)^3, with z as defined
+      in the module `mixtures` (T. Boublik (1970); E. W. Grundke and D. Henderson (1972); L. L. Lee and D.
+      Levesque (1973)).
+    - "linear": a straight line in z, through the contact value of equal particles (`contact_value`) at z = 1
+      (A. Santos, S. B. Yuste and M. Lopez de Haro (1999)).
+    - "santos": a parabola through the values at z = 0 and z = 1 and through the exact contact value at a hard
+      wall, z = 2, by the same authors (J. Chem. Phys. 117, 5785 (2002)).
+
     Parameters
     ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species, in any unit.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions, which are normalised. Default: equal.
     theory : {"santos", "linear", "boublik"}, default "santos"
         Theory; "boublik" exists for spheres only.
     pure : float, optional, [1]
@@ -190,36 +154,6 @@ def mixture_contact_values(
     -------
     ndarray, shape (S, S), [1]
         Contact values g_ij.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range. The packing fraction ends at the limit of the reference equation of
-        the pure fluid.
-
-    Notes
-    -----
-    - "boublik": 1 / (1 - eta) + (3/2) eta z / (1 - eta)^2 + (1/2) eta^2 z^2 / (1 - eta)^3 [1]_ [2]_ [3]_,
-      with z as defined in the module `mixtures`.
-    - "linear": a straight line in z, through the contact value of equal particles (`contact_value`) at z = 1
-      [4]_.
-    - "santos": a parabola through the values at z = 0 and z = 1 and through the exact contact value at a hard
-      wall, z = 2, by the same authors [5]_.
-
-    References
-    ----------
-    .. [1] T. Boublik (1970).
-    .. [2] E. W. Grundke and D. Henderson (1972).
-    .. [3] L. L. Lee and D. Levesque (1973).
-    .. [4] A. Santos, S. B. Yuste and M. Lopez de Haro (1999).
-    .. [5] A. Santos, S. B. Yuste and M. Lopez de Haro, J. Chem. Phys. 117, 5785 (2002).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.mixture_contact_values(0.3, 3, [1.0, 2.0]).round(4)
-    array([[1.9622, 2.1702],
-           [2.1702, 2.6313]])
     """
     eta, sizes, parts = checked_mixture(theory, packing_fraction, dimension, diameters, fractions)
     sizes = sizes / sizes.max()
@@ -241,22 +175,11 @@ def mixture_collision_rates(
 ) -> np.ndarray:
     """Compute the collision rates of each pair of species of a mixture in equilibrium.
 
+    S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)), with S = 2 pi (2D) or 4 pi (3D) and the reduced
+    mass mu_ij. The formula is exact if the contact values are exact (S. Chapman and T. G. Cowling (1970)).
+
     Parameters
     ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (S,), [length]
-        Diameters of the species.
-    fractions : array_like, shape (S,), optional, [1]
-        Number fractions, which are normalised. Default: equal.
-    theory : {"santos", "linear", "boublik"}, default "santos"
-        Theory of the contact values, as for `mixture_contact_values`.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    masses : float or array_like, shape (S,), default 1.0, [mass]
-        Masses of the particles: a number for all species, or one for each.
     contact : ndarray, shape (S, S), optional, [1]
         Contact values g_ij, instead of the theory's.
 
@@ -265,27 +188,6 @@ def mixture_collision_rates(
     ndarray, shape (S, S), [1/time]
         Collisions of one particle of species i with all particles of species j per time. The sum over j is
         the collision rate of a particle.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    S rho_j sigma_ij^(d-1) g_ij sqrt(k_B T / (2 pi mu_ij)), with S = 2 pi (2D) or 4 pi (3D) and the reduced
-    mass mu_ij. The formula is exact if the contact values are exact [1]_.
-
-    References
-    ----------
-    .. [1] S. Chapman and T. G. Cowling (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.mixture_collision_rates(0.3, 3, [1.0, 2.0]).round(4)
-    array([[0.8856, 2.2039],
-           [2.2039, 4.7506]])
     """
     if contact is None:
         contact = mixture_contact_values(packing_fraction, dimension, diameters, fractions, theory)
@@ -313,40 +215,10 @@ def enskog_mutual_diffusion(
     masses: Numbers | Sizes = 1.0,
     contact: np.ndarray | None = None,
 ) -> float:
-    """Compute the Maxwell-Stefan coefficient of mutual diffusion of two species.
+    """Compute the Maxwell-Stefan coefficient of mutual diffusion of two species [length^2/time].
 
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    diameters : array_like, shape (2,), [length]
-        Diameters of both species.
-    fractions : array_like, shape (2,), optional, [1]
-        Number fractions x, which are normalised. Default: equal.
-    theory : {"santos", "linear", "boublik"}, default "santos"
-        Theory of the contact values, as for `mixture_contact_values`.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    masses : float or array_like, shape (2,), default 1.0, [mass]
-        Masses of the particles: a number for both species, or one for each.
-    contact : ndarray, shape (2, 2), optional, [1]
-        Contact values g_ij, instead of the theory's.
-
-    Returns
-    -------
-    float, [length^2/time]
-        Coefficient D_12. The unit of length is the unit of the diameters.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if the number of species is not 2.
-
-    Notes
-    -----
-    Enskog's coefficient in the first Sonine approximation [1]_ is
+    Coefficient D_12. The unit of length is the unit of the diameters. Enskog's coefficient in the first
+    Sonine approximation (S. Chapman and T. G. Cowling (1970), Eqs. 9.81 and 16.9) is
 
         D_12 = d k_B T x_2 / (4 mu_12 nu_12),
 
@@ -354,15 +226,14 @@ def enskog_mutual_diffusion(
     g_12) sqrt(k_B T / (2 pi mu_12)). The coefficient does not include the thermodynamic factor. Higher
     approximations add 2 % for equal masses, up to 13 % for a few light particles among heavy ones.
 
-    References
+    Parameters
     ----------
-    .. [1] S. Chapman and T. G. Cowling (1970), Eqs. 9.81 and 16.9.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.enskog_mutual_diffusion(0.3, 3, [1.0, 2.0]), 4)
-    0.3403
+    diameters : array_like, shape (2,), [length]
+        Diameters of both species.
+    masses : float or array_like, shape (2,), default 1.0, [mass]
+        Masses of the particles: a number for both species, or one for each.
+    contact : ndarray, shape (2, 2), optional, [1]
+        Contact values g_ij, instead of the theory's.
     """
     rates = mixture_collision_rates(
         packing_fraction, dimension, diameters, fractions, theory, temperature, masses, contact

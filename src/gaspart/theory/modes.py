@@ -42,36 +42,9 @@ _SMALLEST = 40.0
 
 @check_ranges
 def sound_attenuation(packing_fraction: float, dimension: int) -> float:
-    """Compute the attenuation of sound from Enskog's transport coefficients.
-
-    Parameters
-    ----------
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float, [length^2/time]
-        Attenuation Gamma, in units of diameters and diameters sqrt(m / k_B T). Sound with the wave number k
-        decays as exp(-Gamma k^2 t / 2).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda / (rho c_p). The heat capacities come from
-    `modes.heat_capacities`, and the transport coefficients from Enskog theory.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.sound_attenuation(0.3, dimension=3), 4)
-    4.6484
+    """Compute the attenuation of sound from Enskog's transport coefficients [length^2/time]. Sound with the
+    wave number k decays as exp(-Gamma k^2 t / 2). Gamma = [2 (d-1)/d eta + zeta] / rho + (gamma - 1) lambda /
+    (rho c_p).
     """
     d, eta = checked_dimension(dimension), packing_fraction
     constant, free = heat_capacities(eta, d)
@@ -91,84 +64,25 @@ def heat_capacities(packing_fraction: float, dimension: int) -> tuple[float, flo
 def velocity_autocorrelation_modes(
     time: Numbers, packing_fraction: float, dimension: int, count: int
 ) -> Values:
-    """Compute the long-time velocity autocorrelation of N particles in a periodic square or cube.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Positive times, in diameters sqrt(m / k_B T).
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`, [1]
-        C(t) divided by C(0), with the term 1/N of a momentum that is not fixed.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If a time is not positive.
-
-    See Also
-    --------
-    diffusion_modes : Integral of this function.
-
-    Notes
-    -----
-    The sum over hydrodynamic modes of the module `modes`. It is valid after many collisions of a particle,
-    for any time that sound needs to cross the container.
-
-    References
-    ----------
-    .. [1] M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.velocity_autocorrelation_modes(10.0, 0.3, dimension=3, count=1000).round(5))
-    0.00109
+    """Compute the long-time velocity autocorrelation of N particles in a periodic square or cube. C(t) / C(0)
+    is a sum over the hydrodynamic modes of the module, with the term 1/N of a momentum that is not fixed. It
+    is valid after many collisions of a particle, for any time that sound needs to cross the container.
+    Literature: M. H. Ernst, E. H. Hauge and J. M. J. van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970).
     """
     return _sum(time, packing_fraction, dimension, count, integrated=False) + 1.0 / count
 
 
 @check_ranges
 def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, count: int) -> Values:
-    """Compute the time integral of `velocity_autocorrelation_modes`, except for a constant.
+    """Compute the time integral of `velocity_autocorrelation_modes`, except for a constant [length^2/time].
+
+    Integral, in units of diameters and diameters sqrt(m / k_B T). The diffusion before modes describe the
+    motion is unknown, so only differences between times are meaningful.
 
     Parameters
     ----------
     time : array_like, [time]
         Positive times, in diameters sqrt(m / k_B T).
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`, [length^2/time]
-        Integral, in units of diameters and diameters sqrt(m / k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If a time is not positive.
-
-    Notes
-    -----
-    The diffusion before modes describe the motion is unknown, so only differences between times are
-    meaningful.
 
     Examples
     --------
@@ -181,10 +95,7 @@ def diffusion_modes(time: Numbers, packing_fraction: float, dimension: int, coun
 
 
 def _sum(time: Numbers, eta: float, dimension: int, count: int, integrated: bool) -> Values:
-    """Return C(t), or its integral, from all wave vectors except 0.
-
-    Only wave vectors that matter at the earliest time are included.
-    """
+    """Return C(t), or its integral, from all wave vectors but 0 that matter at the earliest time."""
     d = checked_dimension(dimension)
     diffusion, density = float(enskog_diffusion(eta, d)), float(number_density(eta, d))
     shear = diffusion + float(enskog_viscosity(eta, d)) / density
@@ -256,10 +167,8 @@ _FAINT = 1e-3
 
 @dataclass(frozen=True)
 class Modes:
-    """Hydrodynamic modes of M wave numbers.
-
-    Correlations of the f hydrodynamic variables are sums over the modes n of amplitude[n, a] amplitude[n, b]
-    exp(decay t). For long waves, the modes of the relaxing fluxes have small amplitudes.
+    """Hydrodynamic modes of M wave numbers. Correlations of the f hydrodynamic variables are sums over the
+    modes n of amplitude[n, a] amplitude[n, b] exp(decay t).
     """
 
     decay: np.ndarray
@@ -340,10 +249,8 @@ def longitudinal_matrix(packing_fraction: float, wave_numbers: np.ndarray) -> np
 def _matrix(
     wave_numbers: np.ndarray, variables: int, fluxes: list[tuple[int, Relaxation, float]]
 ) -> np.ndarray:
-    """Return the (M, n, n) matrix for hydrodynamic variables, followed by the parts of the fluxes.
-
-    The block of the hydrodynamic variables among themselves is still 0. Each flux is a tuple: the variable
-    that it transports, its relaxation, and the density or heat capacity of this variable.
+    """Return the (M, n, n) matrix for hydrodynamic variables (block 0) and parts of fluxes (variable,
+    relaxation, density or heat capacity).
     """
     size = variables + sum(len(flux.rates) for _, flux, _ in fluxes)
     matrix, index = np.zeros((len(wave_numbers), size, size), complex), variables
@@ -357,11 +264,7 @@ def _matrix(
 
 
 def _modes(matrix: np.ndarray, variables: int) -> Modes:
-    """Return all modes of symmetric matrices.
-
-    The left eigenvectors are equal to the right eigenvectors. Their product, without complex conjugation, is
-    normalised to 1.
-    """
+    """Return all modes of symmetric matrices; left and right eigenvectors are equal, with a product of 1."""
     decay, modes = np.linalg.eig(matrix)
     modes = modes / np.sqrt((modes**2).sum(axis=1))[:, None, :]
     return Modes(decay.T, modes[:, :variables].transpose(2, 1, 0))

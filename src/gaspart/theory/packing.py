@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.theory.geometry import (
     Numbers,
     Values,
@@ -55,34 +55,6 @@ def insertion_saturation(
 ) -> float:
     """Compute the packing fraction at which no further particle fits into a square or cube.
 
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    side_over_diameter : float, optional, [1]
-        Side L of the container divided by the diameter sigma, at least 1. Default: an infinite container.
-    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
-        Faces of the container, and what they stop: surfaces ("wall") or centres ("centres_to_walls") of
-        particles.
-
-    Returns
-    -------
-    float, [1]
-        Packing fraction at saturation.
-
-    Raises
-    ------
-    SceneError
-        If `dimension` or `side_over_diameter` is out of range.
-    ValueError
-        If `boundary` has another value.
-
-    See Also
-    --------
-    insertion_saturation_uncertainty : Standard uncertainty of this value.
-
-    Notes
-    -----
     - "periodic": the infinite value eta_s of `RSA_SATURATION` for every L; the actual values fluctuate about
       it.
     - "centres_to_walls": the convention of source A. Centres are in [0, L]^d and the complete volume of the
@@ -91,11 +63,15 @@ def insertion_saturation(
     - "wall": particles are completely inside. The number of particles is the same as for centres in a side of
       L - sigma, so the packing fraction is below the infinite value.
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.insertion_saturation(3, 10.0, "wall"), 4)
-    0.3441
+    See also `insertion_saturation_uncertainty`.
+
+    Parameters
+    ----------
+    side_over_diameter : float, optional, [1]
+        Side L of the container divided by the diameter sigma, at least 1. Default: an infinite container.
+    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
+        Faces of the container, and what they stop: surfaces ("wall") or centres ("centres_to_walls") of
+        particles.
     """
     infinite = RSA_SATURATION[checked_dimension(dimension)]
     if side_over_diameter is None or boundary == "periodic":
@@ -107,38 +83,8 @@ def insertion_saturation(
 def insertion_saturation_uncertainty(
     dimension: int, side_over_diameter: float | None = None, boundary: str = "periodic"
 ) -> float:
-    """Compute the standard uncertainty of `insertion_saturation`.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    side_over_diameter : float, optional, [1]
-        Side of the container divided by the diameter, at least 1. Default: an infinite container.
-    boundary : {"periodic", "wall", "centres_to_walls"}, default "periodic"
-        Faces of the container, as for `insertion_saturation`.
-
-    Returns
-    -------
-    float, [1]
-        Standard uncertainty of the packing fraction at saturation.
-
-    Raises
-    ------
-    SceneError
-        If `dimension` or `side_over_diameter` is out of range.
-    ValueError
-        If `boundary` has another value.
-
-    Notes
-    -----
-    The uncertainty of the literature's value and the uncertainty of the wall excess, added in quadrature.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(f"{theory.insertion_saturation_uncertainty(3, 10.0, 'wall'):.2g}")
-    0.00054
+    """Compute the standard uncertainty of `insertion_saturation`, from the literature's value and the wall
+    excess.
     """
     relative = RSA_SATURATION_UNCERTAINTY[checked_dimension(dimension)] / RSA_SATURATION[dimension]
     value = insertion_saturation(dimension, side_over_diameter, boundary)
@@ -151,42 +97,10 @@ def insertion_saturation_uncertainty(
 
 
 def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the probability that a random attempt to insert a particle succeeds.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to the minimum of the parabola: 0.605 for discs, 0.235 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Probability of no overlap.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1 - 2^d eta + c_2 eta^2, with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). The fraction is exact to order eta^2,
-    up to which random insertion and equilibrium agree [1]_ [2]_. So c_2 follows from B2 and B3 (tested). The
-    value is for an infinite or periodic container. The third order is neglected. This limits the range for an
-    accuracy of about 1 % to eta = 0.05 in 3D and 0.1 in 2D.
-
-    References
-    ----------
-    .. [1] B. Widom (1966).
-    .. [2] P. Schaaf and J. Talbot (1989).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.available_fraction(0.05, dimension=3).round(4))
-    0.6425
+    """Compute the probability that a random attempt to insert a particle succeeds. 1 - 2^d eta + c_2 eta^2,
+    with c_2 = 6 sqrt 3 / pi (2D) or 17 (3D). It is exact to order eta^2, up to which random insertion and
+    equilibrium agree (B. Widom (1966); P. Schaaf and J. Talbot (1989)). So c_2 follows from B2 and B3
+    (tested). The accuracy is about 1 % up to eta = 0.05 in 3D and 0.1 in 2D.
     """
     first = 2.0 ** checked_dimension(dimension)
     second = _AVAILABLE_SECOND[dimension]
@@ -197,32 +111,12 @@ def available_fraction(packing_fraction: Numbers, dimension: int) -> Values:
 def failures_per_particle(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the mean number of failed attempts before a particle is placed.
 
+    1 / `available_fraction` - 1, which is 2^d eta at low density (exact).
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, in the range of `available_fraction`.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Mean number of failures at this packing fraction.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1 / `available_fraction` - 1, which is 2^d eta at low density (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.failures_per_particle(0.05, dimension=3).round(4))
-    0.5564
     """
     available = available_fraction(packing_fraction, dimension)
     return (1.0 - available) / np.asarray(available)
@@ -264,30 +158,12 @@ there.
 def coexistence_packing_fractions(dimension: int) -> np.ndarray:
     """Compute the packing fractions of the coexisting fluid and ordered phase.
 
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
+    The values come from `COEXISTENCE_DENSITY`, which has the sources.
 
     Returns
     -------
     ndarray, shape (2,), [1]
         Packing fractions of the freezing fluid and of the melting ordered phase.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-
-    Notes
-    -----
-    The values come from `COEXISTENCE_DENSITY`, which has the sources.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.coexistence_packing_fractions(3).round(4)
-    array([0.4917, 0.5432])
     """
     return packing_fraction(np.array(COEXISTENCE_DENSITY[checked_dimension(dimension)]), dimension)
 
@@ -301,77 +177,19 @@ def _expansion(eta: Numbers, dimension: int) -> np.ndarray:
     return CLOSE_PACKING[dimension] / eta - 1.0
 
 
-def speedy_crystal(packing_fraction: Numbers) -> Values:
-    """Compute Z of the face-centred cubic crystal of spheres by Speedy's equation.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0.49 (`LOWEST_CRYSTAL`) to below close packing, 0.7405.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Compressibility factor Z.
-
-    Raises
-    ------
-    ValueError
-        If the packing fraction is out of range.
-
-    Notes
-    -----
-    Z = 3/(1-z) - 0.5921 (z - 0.7072)/(z - 0.601) with z = eta / eta_c [1]_. The coefficients are copied from
-    SklogWiki.
-
-    References
-    ----------
-    .. [1] R. J. Speedy, J. Phys.: Condens. Matter 10, 4387 (1998).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.speedy_crystal(0.6)), 4)
-    15.5215
-    """
-    z = 1.0 / (1.0 + _expansion(packing_fraction, 3))
-    return 3.0 / (1.0 - z) - 0.5921 * (z - 0.7072) / (z - 0.601)
-
-
 def etomica_crystal(packing_fraction: Numbers) -> Values:
     """Compute Z of the face-centred cubic crystal of spheres without vacancies, from etomica's fit.
 
+    Z = 3/x + c_0 + c_1 x + ... + c_9 x^9 with x = 1 - eta / eta_c. etomica fitted the coefficients to
+    simulations of its authors above 0.524 (github.com/etomica/etomica, HardSphereSolid.java, commit b6fc002).
+    From 0.527 to 0.545 the difference from runs of DynamO with 1.1e6 spheres is at most
+    `ETOMICA_CRYSTAL_UNCERTAINTY`; the errors of these runs are 3 to 6e-6 (`literature`, tested). Speedy's
+    equation is lower than these runs by 2 to 5e-4.
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0.49 (`LOWEST_CRYSTAL`) to below close packing, 0.7405.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Compressibility factor Z.
-
-    Raises
-    ------
-    ValueError
-        If the packing fraction is out of range.
-
-    Notes
-    -----
-    Z = 3/x + c_0 + c_1 x + ... + c_9 x^9 with x = 1 - eta / eta_c. etomica fitted the coefficients to
-    simulations of its authors above 0.524 [1]_. From 0.527 to 0.545 the difference from runs of DynamO with
-    1.1e6 spheres is at most `ETOMICA_CRYSTAL_UNCERTAINTY`; the errors of these runs are 3 to 6e-6
-    (`literature`, tested). Speedy's equation is lower than these runs by 2 to 5e-4.
-
-    References
-    ----------
-    .. [1] github.com/etomica/etomica, HardSphereSolid.java, commit b6fc002.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.etomica_crystal(0.6)), 4)
-    15.5226
     """
     x = 1.0 - 1.0 / (1.0 + _expansion(packing_fraction, 3))
     return 3.0 / x + np.polynomial.polynomial.polyval(x, _ETOMICA)
@@ -380,44 +198,18 @@ def etomica_crystal(packing_fraction: Numbers) -> Values:
 def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute Z of a crystal from its free-volume limit and fitted corrections.
 
+    Z = d/alpha + a_0 + a_1 alpha + ... with alpha = V / V_c - 1 (B. J. Alder, W. G. Hoover and D. A. Young,
+    J. Chem. Phys. 49, 3688 (1968)). Discs on the triangular lattice: 2/alpha + 1.90(1) + 0.67(7) alpha (by
+    SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below `CRYSTAL_OF_1024_DISCS`, 1.2 % without this term).
+    Spheres, face-centred cubic: 3/alpha + 2.566 + 0.55 alpha (2.56 and 0.56 by SklogWiki) - 1.19 alpha^2 +
+    5.95 alpha^3 (not verified; within 0.15 % of Speedy's fit). The free-volume term is exact at close
+    packing. The fits are accurate to about 0.3 %. The equation is only plotted; no claim depends on it.
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0.70 for discs, 0.49 for spheres (`LOWEST_CRYSTAL`), to below close
         packing.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Compressibility factor Z.
-
-    Raises
-    ------
-    SceneError
-        If the dimension is neither 2 nor 3.
-    ValueError
-        If the packing fraction is out of range.
-
-    Notes
-    -----
-    Z = d/alpha + a_0 + a_1 alpha + ... with alpha = V / V_c - 1 [1]_. Discs on the triangular lattice:
-    2/alpha + 1.90(1) + 0.67(7) alpha (by SklogWiki) + 1.5 alpha^2 (not verified; 0.4 % below
-    `CRYSTAL_OF_1024_DISCS`, 1.2 % without this term). Spheres, face-centred cubic: 3/alpha + 2.566 + 0.55
-    alpha (2.56 and 0.56 by SklogWiki) - 1.19 alpha^2 + 5.95 alpha^3 (not verified; within 0.15 % of Speedy's
-    fit). The free-volume term is exact at close packing. The fits are accurate to about 0.3 %. The equation
-    is only plotted; no claim depends on it.
-
-    References
-    ----------
-    .. [1] B. J. Alder, W. G. Hoover and D. A. Young, J. Chem. Phys. 49, 3688 (1968).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.alder_hoover_young_crystal(0.8, dimension=2)), 4)
-    16.9836
     """
     alpha = _expansion(packing_fraction, checked_dimension(dimension))
     series = {2: (1.90, 0.67, 1.5), 3: (2.566, 0.55, -1.19, 5.95)}[dimension]
@@ -428,34 +220,14 @@ def alder_hoover_young_crystal(packing_fraction: Numbers, dimension: int) -> Val
 def crystal_finite_size_correction(compressibility_factor: Values, count: Values) -> Values:
     """Compute the difference in Z between a finite periodic crystal and the infinite crystal.
 
+    Z_N - Z_infinity: -(Z - 1) / N, for a crystal whose centre of mass is free. The centre of mass can move in
+    the complete volume V, and the other N - 1 particles in their free volumes: Q_N ~ V v_f^(N-1), so Z_N =
+    1/N + (1 - 1/N) Z. The formula is exact at close packing. At lower density there are further, unknown
+    terms of order 1/N, about V / V_c - 1 times as large.
+
     Parameters
     ----------
     compressibility_factor : float or ndarray, [1]
         Z of the infinite crystal.
-    count : int or ndarray
-        Number N of particles.
-
-    Returns
-    -------
-    float or ndarray, [1]
-        Z_N - Z_infinity.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    -(Z - 1) / N, for a crystal whose centre of mass is free. The centre of mass can move in the complete
-    volume V, and the other N - 1 particles in their free volumes: Q_N ~ V v_f^(N-1), so Z_N = 1/N + (1 - 1/N)
-    Z. The formula is exact at close packing. At lower density there are further, unknown terms of order 1/N,
-    about V / V_c - 1 times as large.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.crystal_finite_size_correction(11.0, count=500)
-    -0.02
     """
     return -(compressibility_factor - 1.0) / count

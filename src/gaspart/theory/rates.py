@@ -14,9 +14,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from gaspart.scene.face_checks import mean_count
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.boundaries import mean_count
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.scene.species import Particle, Species
 from gaspart.theory.discretisation import contact_values
 
@@ -38,9 +38,8 @@ class Rates:
 
 
 def usual_count(scene: Scene) -> float:
-    """Return the number of particles for which rates are computed.
-
-    Between open faces this is the number at the start or with the strongest reservoir, if that is more.
+    """Return the number of particles for rates; between open faces at the start or by the strongest
+    reservoir.
     """
     return max(scene.count, mean_count(scene)) if scene.is_open else scene.count
 
@@ -55,9 +54,8 @@ Kinds: TypeAlias = Sequence[Species | Particle]
 
 
 def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
-    """Compute the collision rates of a scene in its initial state.
-
-    If the faces are hotter than the particles, the temperature of the faces is used.
+    """Compute the collision rates of a scene in its initial state. If the faces are hotter than the
+    particles, the temperature of the faces is used.
 
     dense : True to use the contact values of a dense gas
     instead : representative kinds of particles that replace the kinds of the scene, because each pair of
@@ -73,10 +71,8 @@ def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
 
 
 def rate_at_scatterers(scene: Scene) -> float:
-    """Compute the collisions per time of a moving particle with fixed particles.
-
-    In a container that the particles fill evenly, the rate is the mean speed times the cross section of all
-    fixed particles, divided by the volume that they leave free.
+    """Compute the collisions per time of a moving particle with fixed ones: mean speed times cross section
+    per free volume.
     """
     d, moving = scene.dimension, scene.moving_kinds
     fixed = [kind for kind in scene.kinds if kind.fixed and kind.count]
@@ -98,10 +94,7 @@ def rate_at_scatterers(scene: Scene) -> float:
 
 
 def highest_speed(scene: Scene) -> float:
-    """Return the highest mean speed that particles can reach with the initial energy.
-
-    The mean speed is highest if all particles have momenta of equal magnitude.
-    """
+    """Return the highest mean speed at the initial energy: all particles have momenta of equal magnitude."""
     kinds = scene.moving_kinds
     energy = sum(
         0.5 * kind.count * kind.mass * scene.dimension * square_of(kind, scene.dimension) for kind in kinds

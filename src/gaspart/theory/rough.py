@@ -14,45 +14,11 @@ from gaspart.theory.granular import checked_restitution
 
 
 def rough_matrix(inertia: float, tangential: float, normal: float = 1.0) -> np.ndarray:
-    """Compute the matrix that describes the exchange of translational and rotational energy of rough discs.
-
-    Parameters
-    ----------
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2), positive.
-    tangential : float, [1]
-        Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution, from 0 to 1.
-
-    Returns
-    -------
-    ndarray, shape (2, 2), [1]
-        Matrix M in d(T_tr, T_rot)/ds = M (T_tr, T_rot), with s collisions of a particle.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range.
-
-    Notes
-    -----
-    M = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and
-    h = q (1 + tangential) / (2q + 2) [1]_ [2]_ (exact averages over Maxwellian velocities and spins, tested).
-    T_tr = m <v^2> / 2, T_rot = I <w^2>. In a perfectly rough gas, T_tr - T_rot decays at the rate 3q /
-    (1+q)^2.
-
-    References
-    ----------
-    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
-    .. [2] S. Luding and others, Phys. Rev. E 58, 3416 (1998).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.rough_matrix(inertia=0.5, tangential=1.0).round(4)
-    array([[-0.2222,  0.2222],
-           [ 0.4444, -0.4444]])
+    """Compute the matrix that describes the exchange of translational and rotational energy of rough discs. M
+    = [[-2A, 2B], [4B, -4C]] with A = (1 - normal^2)/4 + h (1 - h)/2, B = h^2 / 2q, C = h (1 - h/q) / 2q and h
+    = q (1 + tangential) / (2q + 2) (M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997)) (S. Luding
+    and others, Phys. Rev. E 58, 3416 (1998)) (exact averages over Maxwellian velocities and spins, tested).
+    In a perfectly rough gas, T_tr - T_rot decays at the rate 3q / (1+q)^2.
     """
     q = float(inertia)
     if not q > 0.0:
@@ -77,16 +43,14 @@ def rough_temperatures(
 ) -> np.ndarray:
     """Compute the translational and rotational temperatures of rough discs after some collisions.
 
+    The result is the solution of the linear equation with `rough_matrix`.
+
     Parameters
     ----------
     collisions : array_like, [1]
         Number s of collisions of a particle.
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2), positive.
     tangential : float, [1]
         Coefficient of tangential restitution, from -1 (smooth) to 1 (perfectly rough).
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution, from 0 to 1.
     start : tuple of float, default (1.0, 0.0), [energy]
         Initial values of T_tr and T_rot.
 
@@ -94,22 +58,6 @@ def rough_temperatures(
     -------
     ndarray, shape (2, ...), [energy]
         T_tr and T_rot; both have the shape of `collisions`.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is the solution of the linear equation with `rough_matrix`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.rough_temperatures([0.0, 1.0, 10.0], inertia=0.5, tangential=1.0).round(4)
-    array([[1.    , 0.8378, 0.6671],
-           [0.    , 0.3244, 0.6658]])
     """
     values, vectors = np.linalg.eig(rough_matrix(inertia, tangential, normal))
     weights = np.linalg.solve(vectors, np.asarray(start, dtype=float))
@@ -120,35 +68,14 @@ def rough_temperatures(
 def rough_ratio(inertia: float, tangential: float, normal: float = 1.0) -> float:
     """Compute the steady ratio of the rotational and translational temperatures of rough discs.
 
+    T_rot / T_tr, for cooling and for elastic discs; 1 if the discs are elastic and perfectly rough. The ratio
+    is given by the eigenvector of `rough_matrix` with the slower decay. For cooling rough discs it is
+    accurate to only 5 %; `rough_cooling` has values from direct simulation.
+
     Parameters
     ----------
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2), positive.
     tangential : float, [1]
         Coefficient of tangential restitution, above -1 and at most 1 (perfectly rough).
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution, from 0 to 1.
-
-    Returns
-    -------
-    float, [1]
-        T_rot / T_tr, for cooling and for elastic discs; 1 if the discs are elastic and perfectly rough.
-
-    Raises
-    ------
-    ValueError
-        If the discs are smooth, because their spins then never change, or if an argument is out of range.
-
-    Notes
-    -----
-    The ratio is given by the eigenvector of `rough_matrix` with the slower decay. For cooling rough discs it
-    is accurate to only 5 %; `rough_cooling` has values from direct simulation.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.rough_ratio(inertia=0.5, tangential=0.5, normal=0.9), 4)
-    0.7904
     """
     if tangential == -1.0:
         raise ValueError("tangential: -1 (smooth discs do not exchange energy with their spins)")
@@ -169,41 +96,11 @@ ROUGH_START_UNCERTAINTY = 0.002
 
 @check_ranges
 def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
-    """Return the deviation of rough discs from Maxwellian energy exchange, for a start without spin.
-
-    Parameters
-    ----------
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2).
-    collisions : array_like, [1]
-        Number s of collisions of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `collisions`, [1]
-        T_tr - T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 +
-        q)^2). NaN if it was not computed.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The exponential is the result for Maxwellian velocities [1]_. The values were computed by direct
-    simulation of the homogeneous Boltzmann equation (`boltzmann.rough_start`). The standard uncertainty is
-    `ROUGH_START_UNCERTAINTY`.
-
-    References
-    ----------
-    .. [1] M. Huthmann and A. Zippelius, Phys. Rev. E 56, R6275 (1997).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> abs(float(theory.rough_start_excess(0.5, collisions=2.0))) < 0.05
-    True
+    """Return the deviation of rough discs from Maxwellian energy exchange, for a start without spin. T_tr -
+    T_rot of perfectly rough discs divided by the initial temperature, minus exp(-3 q s / (1 + q)^2). NaN if
+    it was not computed. The exponential is the result for Maxwellian velocities (M. Huthmann and A.
+    Zippelius, Phys. Rev. E 56, R6275 (1997)). The values were computed by direct simulation of the
+    homogeneous Boltzmann equation (`tests/theory/homogeneous.py`).
     """
     table = np.loadtxt(Path(__file__).parent / "data" / "rough_start.csv", delimiter=",", skiprows=1)
     s, excess = table[np.isclose(table[:, 0], inertia), 1:].T
@@ -214,48 +111,13 @@ def rough_start_excess(inertia: float, collisions: Numbers) -> Values:
 
 @check_ranges
 def rough_wall_difference(time: Numbers, inertia: float) -> Values:
-    """Compute the temperature difference of rough particles that collide only with two rough walls.
-
-    Parameters
-    ----------
-    time : array_like, [1]
-        Reduced time t sqrt(k_B T / m) / h, with the distance h between the walls that is accessible to
-        centres.
-    inertia : float, [1]
-        Reduced moment of inertia q = I / (m R^2), positive.
-
-    Returns
-    -------
-    ndarray, same shape as `time`, [1]
-        (T_par - T_rot) / T_par(0).
-
-    Raises
-    ------
-    SceneError
-        If a time is out of range.
-    ValueError
-        If the inertia is not positive.
-
-    Notes
-    -----
-    The particles are perfectly rough and initially have no spin. The walls are parallel. A wall hit rotates
-    the pair (v, sqrt(q) R w) by the angle a, with cos a = (1 - q)/(1 + q) [1]_. Here v is a tangential
-    velocity and w the corresponding spin, relative to the wall. After K hits v is v(0) cos(K a), and the
-    difference is the mean of cos(2 K a). For uniform positions, its mean at a given normal speed is linear in
-    time between the times of integer K. Written as a Fourier series and averaged over Maxwellian normal
-    velocities, it is the sum over integers j of (sin a / (a + pi j))^2 exp(-2 (a + pi j)^2 time^2). The
-    result is exact. The sum is truncated at j = 1000, which causes an error (2e-4) only for times below
-    0.002.
-
-    References
-    ----------
-    .. [1] Spencer 2022, Eq. 40.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.rough_wall_difference([0.1, 1.0], inertia=0.5).round(4)
-    array([0.8582, 0.0285])
+    """Compute the temperature difference of rough particles that collide only with two rough walls. (T_par -
+    T_rot) / T_par(0). A wall hit rotates the pair (v, sqrt(q) R w) by the angle a, with cos a = (1 - q)/(1 +
+    q) (Spencer 2022, Eq. 40). Here v is a tangential velocity and w the corresponding spin, relative to the
+    wall. After K hits v is v(0) cos(K a), and the difference is the mean of cos(2 K a). For uniform
+    positions, its mean at a given normal speed is linear in time between the times of integer K. Written as a
+    Fourier series and averaged over Maxwellian normal velocities, it is the sum over integers j of (sin a /
+    (a + pi j))^2 exp(-2 (a + pi j)^2 time^2).
     """
     q = float(inertia)
     if not q > 0.0:

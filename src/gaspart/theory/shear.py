@@ -40,7 +40,10 @@ def free_molecular_stress(
     mass: float = 1.0,
     accommodation: tuple[float, float] = FULL,
 ) -> Values:
-    """Compute the shear stress of a gas whose particles collide only with the walls.
+    """Compute the shear stress of a gas whose particles collide only with the walls [mass
+    length^(2-d)/time^2].
+
+    n velocity sqrt(m T / 2 pi), multiplied by a_1 a_2 / (a_1 + a_2 - a_1 a_2). Exact (closed form).
 
     Parameters
     ----------
@@ -48,32 +51,8 @@ def free_molecular_stress(
         Number density n in d dimensions.
     velocity : array_like, [length/time]
         Difference of the walls' velocities.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
     accommodation : (float, float), default (1.0, 1.0), [1]
         Accommodation coefficients a_1 and a_2 of the walls.
-
-    Returns
-    -------
-    float or ndarray, [mass length^(2-d)/time^2]
-        Shear stress on the walls.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    n velocity sqrt(m T / 2 pi), multiplied by a_1 a_2 / (a_1 + a_2 - a_1 a_2). Exact (closed form).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.free_molecular_stress(0.1, 1.0)), 5)
-    0.03989
     """
     first, second = accommodation
     part = first * second / (first + second - first * second)
@@ -82,39 +61,18 @@ def free_molecular_stress(
 
 @check_ranges
 def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0) -> Values:
-    """Compute the shear stress of dilute spheres between sliding walls, with slip at both walls.
+    """Compute the shear stress of dilute spheres between sliding walls, with slip at both walls [mass/(length
+    time^2)].
+
+    Shear stress of spheres of mass 1 at temperature 1: mu velocity / (length + 2 `VELOCITY_SLIP` l_0), with
+    the viscosity mu. The formula is of first order in `velocity` and l_0 / length.
 
     Parameters
     ----------
     length : array_like, [length]
         Distance between the walls.
-    density : array_like, [1/length^3]
-        Number density.
     velocity : array_like, [length/time]
         Difference of the walls' velocities.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float or ndarray, [mass/(length time^2)]
-        Shear stress of spheres of mass 1 at temperature 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    mu velocity / (length + 2 `VELOCITY_SLIP` l_0), with the viscosity mu. The formula is of first order in
-    `velocity` and l_0 / length.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.slip_flow_stress(100.0, 0.01, 0.1)), 6)
-    0.000119
     """
     path = 1.0 / (np.sqrt(2.0) * np.pi * np.asarray(density, dtype=float) * diameter**2)
     return enskog_viscosity(0.0, 3, diameter) * velocity / (length + 2.0 * VELOCITY_SLIP * path)
@@ -124,46 +82,10 @@ def slip_flow_stress(length: Numbers, density: Numbers, velocity: Numbers, diame
 def channel_velocity(
     height: Numbers, length: Numbers, density: Numbers, force: Numbers, diameter: float = 1.0
 ) -> Values:
-    """Compute the velocity of dilute spheres that a force drives along two resting walls.
-
-    Parameters
-    ----------
-    height : array_like, [length]
-        Height above one of the walls.
-    length : array_like, [length]
-        Distance between the walls.
-    density : array_like, [1/length^3]
-        Number density.
-    force : array_like, [mass length/time^2]
-        Force on each particle.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float or ndarray, [length/time]
-        Velocity of spheres of mass 1 at temperature 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The profile is Poiseuille's parabola with slip: density force / (2 mu) [height (length - height) +
-    `VELOCITY_SLIP` l_0 length], with the viscosity mu. It is of first order in `force` and l_0 / length. The
-    next order in l_0 adds 0.6 density force l_0^2 / mu [1]_.
-
-    References
-    ----------
-    .. [1] N. G. Hadjiconstantinou, Phys. Fluids 15, 2352 (2003).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.channel_velocity(50.0, 100.0, 0.01, 1e-4)), 5)
-    0.01396
+    """Compute the velocity of dilute spheres that a force drives along two resting walls [length/time].
+    Velocity of spheres of mass 1 at temperature 1. The profile is Poiseuille's parabola with slip: density
+    force / (2 mu) [height (length - height) + `VELOCITY_SLIP` l_0 length], with the viscosity mu. The next
+    order in l_0 adds 0.6 density force l_0^2 / mu (N. G. Hadjiconstantinou, Phys. Fluids 15, 2352 (2003)).
     """
     height, length, density, force = (np.asarray(a, dtype=float) for a in (height, length, density, force))
     path = 1.0 / (np.sqrt(2.0) * np.pi * density * diameter**2)
@@ -172,99 +94,14 @@ def channel_velocity(
 
 
 @check_ranges
-def free_flight_drift(
-    time: Numbers, length: float, force: float = 1.0, temperature: float = 1.0, mass: float = 1.0
-) -> Values:
-    """Compute the mean velocity, along two walls, of particles that collide only with the walls.
-
-    Parameters
-    ----------
-    time : array_like, [time]
-        Time since a force on each particle was switched on; before that the gas was in equilibrium.
-    length : float, [length]
-        Distance between the walls.
-    force : float, default 1.0, [mass length/time^2]
-        Force on each particle.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-
-    Returns
-    -------
-    float or ndarray, same shape as `time`, [length/time]
-        Mean velocity.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Exact (closed form). The drift is force / mass times the mean time since a particle last hit a wall,
-    limited to `time`. This mean is an integral over t of the fraction of particles that have not hit a wall
-    for the time t. The fraction is the average of 1 - abs(v) t / length, if positive, over Maxwell's
-    distribution. The drift grows with the logarithm of time without limit, because many particles cross
-    slowly.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.free_flight_drift(10.0, 5.0)), 4)
-    4.5108
-    """
-    from scipy.special import erf, exp1
-
-    crossing = length / np.sqrt(temperature / mass)
-    s = np.asarray(time, dtype=float) / crossing
-    w = 0.5 / np.maximum(s, 1e-9) ** 2
-    age = s * erf(np.sqrt(w)) + (0.5 * exp1(w) + s**2 * np.expm1(-w)) / np.sqrt(2.0 * np.pi)
-    return force / mass * crossing * age
-
-
-@check_ranges
 def interpolated_stress(
     length: Numbers, density: Numbers, velocity: Numbers, diameter: float = 1.0
 ) -> Values:
-    """Compute the shear stress of dilute spheres between sliding walls at any Knudsen number.
-
-    Parameters
-    ----------
-    length : array_like, [length]
-        Distance between the walls.
-    density : array_like, [1/length^3]
-        Number density.
-    velocity : array_like, [length/time]
-        Difference of the walls' velocities.
-    diameter : float, default 1.0, [length]
-        Diameter sigma of a particle.
-
-    Returns
-    -------
-    float or ndarray, [mass/(length time^2)]
-        Shear stress of spheres of mass 1 at temperature 1.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    1 / (1 / free + 1 / fluid), where `free` is the stress of free molecular flow and `fluid` the stress
-    without slip, in Sherman's form [1]_. To first order in `velocity` the formula is correct in both limits.
-    Between the limits it is an approximation: 2 % above the stress with slip at a Knudsen number of 0.1.
-
-    References
-    ----------
-    .. [1] F. S. Sherman, Rarefied Gas Dynamics 2, 228 (1963).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.interpolated_stress(100.0, 0.01, 0.1)), 6)
-    0.000124
+    """Compute the shear stress of dilute spheres between sliding walls at any Knudsen number [mass/(length
+    time^2)]. Shear stress of spheres of mass 1 at temperature 1: 1 / (1 / free + 1 / fluid), where `free` is
+    the stress of free molecular flow and `fluid` the stress without slip, in Sherman's form (F. S. Sherman,
+    Rarefied Gas Dynamics 2, 228 (1963)). Between the limits it is an approximation: 2 % above the stress with
+    slip at a Knudsen number of 0.1.
     """
     free = free_molecular_stress(density, 1.0)
     fluid = enskog_viscosity(0.0, 3, diameter) / length
@@ -273,37 +110,10 @@ def interpolated_stress(
 
 @check_ranges
 def viscous_heating(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute Enskog's viscosity divided by twice the thermal conductivity.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float or ndarray, same shape as `packing_fraction`, [mass]
-        Ratio in units of mass / k_B.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Between two walls, T plus this ratio times u^2 is uniform. The velocity u is relative to the position of
-    the highest temperature. The result is exact if the ratio of the two coefficients is constant; both are
-    proportional to the square root of T. The ratio is 2 / 15 in the first Sonine approximation of dilute
-    spheres.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.viscous_heating(0.0, dimension=3)), 4)
-    0.1321
+    """Compute Enskog's viscosity divided by twice the thermal conductivity [mass]. Between two walls, T plus
+    this ratio times u^2 is uniform. u is relative to the position of the highest temperature. The result is
+    exact if the ratio of the two coefficients is constant; both are proportional to the square root of T. The
+    ratio is 2 / 15 in the first Sonine approximation of dilute spheres.
     """
     conductivity = enskog_conductivity(packing_fraction, dimension)
     return 0.5 * enskog_viscosity(packing_fraction, dimension) / conductivity

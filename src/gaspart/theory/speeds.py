@@ -29,40 +29,16 @@ Monte Carlo).
 def mean_speed(
     dimension: int, temperature: float = 1.0, mass: float = 1.0, count: int | None = None
 ) -> float:
-    """Compute the mean speed in equilibrium.
+    """Compute the mean speed in equilibrium [length/time].
 
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-    count : int, optional
-        Number N of particles at the fixed total energy d N k_B T / 2. Default: infinite.
-
-    Returns
-    -------
-    float, [length/time]
-        Mean speed.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     sqrt(pi k_B T / 2m) in 2D, sqrt(8 k_B T / (pi m)) in 3D (exact). With `count` the result is multiplied by
     sqrt(n) Gamma(n) / Gamma(n + 1/2), n = d N / 2, because the velocities are uniform on a sphere in d N
     dimensions (exact).
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.mean_speed(3), 4), round(theory.mean_speed(3, count=10), 4)
-    (1.5958, 1.6091)
+    Parameters
+    ----------
+    count : int, optional
+        Number N of particles at the fixed total energy d N k_B T / 2. Default: infinite.
     """
     ratio = {2: 0.5 * math.pi, 3: 8.0 / math.pi}[checked_dimension(dimension)]
     infinite = math.sqrt(ratio * temperature / mass)
@@ -79,39 +55,15 @@ def mean_speed_factor(freedoms: float) -> float:
 
 @check_ranges
 def maxwell_pdf(speed: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Compute the density of speeds of Maxwell's distribution.
+    """Compute the density of speeds of Maxwell's distribution [time/length].
+
+    Let u = v sqrt(m / k_B T). The density is sqrt(m / k_B T) times u exp(-u^2/2) in 2D, and sqrt(m / k_B T)
+    times sqrt(2/pi) u^2 exp(-u^2/2) in 3D (exact).
 
     Parameters
     ----------
     speed : array_like, [length/time]
         Speeds v; the density of negative speeds is 0.
-    dimension : {2, 3}
-        Discs or spheres.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `speed`, [time/length]
-        Probability density.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    Let u = v sqrt(m / k_B T). The density is sqrt(m / k_B T) times u exp(-u^2/2) in 2D, and sqrt(m / k_B T)
-    times sqrt(2/pi) u^2 exp(-u^2/2) in 3D (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.maxwell_pdf([0.0, 1.0, 2.0], dimension=3).round(4)
-    array([0.    , 0.4839, 0.4319])
     """
     checked_dimension(dimension)
     scale = math.sqrt(mass / temperature)
@@ -130,42 +82,18 @@ def maxwell_cdf(
 ) -> Values:
     """Compute the fraction of particles slower than a given speed in equilibrium.
 
-    Parameters
-    ----------
-    speed : array_like, [length/time]
-        Speeds v.
-    dimension : {2, 3}
-        Discs or spheres.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-    freedoms : float, optional
-        Number D of degrees of freedom, more than d, of equal particles with the fixed total energy D k_B T /
-        2. Default: Maxwell's distribution.
-
-    Returns
-    -------
-    ndarray, same shape as `speed`, [1]
-        Fraction of particles.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range, or if `freedoms` is not above `dimension`.
-
-    Notes
-    -----
     The incomplete gamma function P(d/2, m v^2 / 2 k_B T) (exact). With `freedoms` the velocities are uniform
     on a sphere in D dimensions. d of these dimensions belong to one particle, and x = m v^2 / (D k_B T) has a
     beta distribution: I_x(d/2, (D - d)/2) (exact). D is d N. For velocities relative to the centre of mass,
     multiplied by sqrt(N / (N - 1)), D is d (N - 1).
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.maxwell_cdf([1.0, 2.0], dimension=3).round(4)
-    array([0.1987, 0.7385])
+    Parameters
+    ----------
+    speed : array_like, [length/time]
+        Speeds v.
+    freedoms : float, optional
+        Number D of degrees of freedom, more than d, of equal particles with the fixed total energy D k_B T /
+        2. Default: Maxwell's distribution.
     """
     from scipy.special import betainc, gammainc
 
@@ -180,34 +108,13 @@ def maxwell_cdf(
 
 @check_ranges
 def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, mass: float = 1.0) -> Values:
-    """Compute the speed below which a given fraction of the particles lies; inverse of `maxwell_cdf`.
+    """Compute the speed below which a given fraction of the particles lies; inverse of `maxwell_cdf`
+    [length/time].
 
     Parameters
     ----------
     probability : array_like, [1]
         Fraction of particles, from 0 to 1.
-    dimension : {2, 3}
-        Discs or spheres.
-    temperature : float, default 1.0, [energy]
-        Temperature k_B T.
-    mass : float, default 1.0, [mass]
-        Mass m of a particle.
-
-    Returns
-    -------
-    ndarray, same shape as `probability`, [length/time]
-        Speeds (exact).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.maxwell_ppf(0.5, dimension=3).round(4))
-    1.5382
     """
     from scipy.special import gammaincinv
 
@@ -220,36 +127,16 @@ def maxwell_ppf(probability: Numbers, dimension: int, temperature: float = 1.0, 
 def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = False) -> float:
     """Compute the kurtosis <v^4> / <v^2>^2 of the speeds in equilibrium.
 
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int, optional
-        Number N of particles at fixed energy. Default: infinite.
-    zero_momentum : bool, default False
-        Fix the total momentum at zero. Without `count` this argument has no effect.
-
-    Returns
-    -------
-    float, [1]
-        Kurtosis.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     (d+2)/d, which is 2 in 2D and 5/3 in 3D (exact). With `count` the velocities are uniform on a sphere in D
     = d N dimensions, or D = d (N-1) for zero total momentum. Then the kurtosis of a particle is (d+2)/d times
     D/(D+2) (exact).
 
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.kurtosis(3), 4), round(theory.kurtosis(3, count=100), 4)
-    (1.6667, 1.6556)
+    Parameters
+    ----------
+    count : int, optional
+        Number N of particles at fixed energy. Default: infinite.
+    zero_momentum : bool, default False
+        Fix the total momentum at zero. Without `count` this argument has no effect.
     """
     infinite = (checked_dimension(dimension) + 2.0) / dimension
     if count is None:
@@ -260,39 +147,11 @@ def kurtosis(dimension: int, count: int | None = None, zero_momentum: bool = Fal
 
 @check_ranges
 def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
-    """Compute the equilibrium scatter of the instantaneous kurtosis of N particles.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    deviation : float, [1]
-        Standard deviation.
-    skewness : float, [1]
-        Skewness.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The velocities are uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2
-    with e = v^2 and q = e^2. At constant energy it does not depend on sum(e). So its moment of order m is N^m
-    <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for which <e^k> is d (d+2) ... (d+2k-2). If
-    the total momentum is fixed at zero, the scatter changes by the relative amount 1/N (neglected).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> [round(value, 4) for value in theory.kurtosis_scatter(3, 1000)]
-    [0.0384, 0.2528]
+    """Compute the equilibrium scatter of the instantaneous kurtosis of N particles. The velocities are
+    uniform on a sphere in D = d N dimensions (exact). The kurtosis is N sum(q) / (sum e)^2 with e = v^2 and q
+    = e^2. So its moment of order m is N^m <sum(q)^m> / <(sum e)^2m> for independent normal velocities, for
+    which <e^k> is d (d+2) ... (d+2k-2). If the total momentum is fixed at zero, the scatter changes by the
+    relative amount 1/N (neglected).
     """
 
     def moment(freedoms: int, order: int) -> float:
@@ -312,29 +171,7 @@ def kurtosis_scatter(dimension: int, count: int) -> tuple[float, float]:
 
 
 def initial_kurtosis_slope(dimension: int) -> float:
-    """Return the initial slope dK/ds of the kurtosis of a gas that starts from equal speeds.
-
-    Parameters
-    ----------
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    float, [1]
-        Slope at s = 0, with s collisions per particle: 64/225 in 2D, 8/35 in 3D (exact).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(theory.initial_kurtosis_slope(3), 4)
-    0.2286
-    """
+    """Return the initial slope dK/ds of the kurtosis from equal speeds: 64/225 in 2D, 8/35 in 3D (exact)."""
     return {2: 64.0 / 225.0, 3: 8.0 / 35.0}[checked_dimension(dimension)]
 
 
@@ -345,10 +182,13 @@ class Relaxation:
     The independent variable is s, the number of collisions per particle since the start, 2 N_collisions / N.
     As functions of s the curves do not depend on diameter, speed or density (Enskog theory).
 
+    The curves were computed from the homogeneous Boltzmann equation by Monte Carlo. They are accurate to
+    `RELAXATION_UNCERTAINTY` up to `longest`. Beyond `longest` the final exponential decay is extrapolated,
+    which stays within this error. The number of particles is infinite. A finite gas at fixed energy reaches
+    `kurtosis(dimension, count)` instead. See also `relaxation`.
+
     Parameters
     ----------
-    dimension : {2, 3}
-        Discs or spheres.
     collisions_table : ndarray, shape (n,)
         Values of s.
     equilibrium_table : ndarray, shape (n,)
@@ -359,17 +199,6 @@ class Relaxation:
         Logarithm of the fraction of particles without a collision.
     mean_speed_table : ndarray, shape (n,)
         Mean speed divided by the root-mean-square speed.
-
-    See Also
-    --------
-    relaxation : Return the relaxation of discs or spheres.
-
-    Notes
-    -----
-    The curves were computed from the homogeneous Boltzmann equation by Monte Carlo. They are accurate to
-    `RELAXATION_UNCERTAINTY` up to `longest`. Beyond `longest` the final exponential decay is extrapolated,
-    which stays within this error. The number of particles is infinite. A finite gas at fixed energy reaches
-    `kurtosis(dimension, count)` instead.
 
     Examples
     --------
@@ -388,14 +217,7 @@ class Relaxation:
 
     @property
     def longest(self) -> float:
-        """Largest tabulated s (dimensionless).
-
-        Examples
-        --------
-        >>> from gaspart import theory
-        >>> theory.relaxation(3).longest > 5.0
-        True
-        """
+        """Largest tabulated s (dimensionless)."""
         return float(self.collisions_table[-1])
 
     def _require_not_negative(self, s: Numbers) -> np.ndarray:
@@ -412,22 +234,6 @@ class Relaxation:
         ----------
         s : array_like, [1]
             Collisions per particle.
-
-        Returns
-        -------
-        ndarray, same shape as `s`, [1]
-            Kurtosis: 1 at the start, (d+2)/d at the end.
-
-        Raises
-        ------
-        ValueError
-            If `s` is negative.
-
-        Examples
-        --------
-        >>> from gaspart import theory
-        >>> float(theory.relaxation(3).kurtosis(1.0).round(3))
-        1.202
         """
         s = self._require_not_negative(s)
         beyond = np.maximum(s - self.longest, 0.0) * KURTOSIS_RELAXATION_RATE[self.dimension]
@@ -442,22 +248,6 @@ class Relaxation:
         ----------
         s : array_like, [1]
             Collisions per particle.
-
-        Returns
-        -------
-        ndarray, same shape as `s`, [1]
-            Fraction, slightly below exp(-s).
-
-        Raises
-        ------
-        ValueError
-            If `s` is negative.
-
-        Examples
-        --------
-        >>> from gaspart import theory
-        >>> float(theory.relaxation(3).never_hit(1.0).round(3))
-        0.367
         """
         s = self._require_not_negative(s)
         last_rate = -self.log_never_hit_table[-1] / self.longest
@@ -471,22 +261,6 @@ class Relaxation:
         ----------
         s : array_like, [1]
             Collisions per particle.
-
-        Returns
-        -------
-        ndarray, same shape as `s`, [1]
-            Ratio: 1 at the start, `mean_speed(d) / sqrt(d)` at the end.
-
-        Raises
-        ------
-        ValueError
-            If `s` is negative.
-
-        Examples
-        --------
-        >>> from gaspart import theory
-        >>> float(theory.relaxation(3).mean_speed(1.0).round(3))
-        0.971
         """
         s = self._require_not_negative(s)
         decay = np.exp(-KURTOSIS_RELAXATION_RATE[self.dimension] * np.maximum(s - self.longest, 0.0))
@@ -496,32 +270,14 @@ class Relaxation:
     def collisions(self, equilibrium_collisions: Numbers) -> Values:
         """Compute s from the collisions per particle in a gas in equilibrium at the same time.
 
+        s is larger than the argument, because particles of equal speeds collide more often: initially by 2.3
+        % in 3D and 1.6 % in 2D. The accuracy is 0.5 %.
+
         Parameters
         ----------
         equilibrium_collisions : array_like, [1]
             Collisions per particle nu t in a gas in equilibrium at the same energy, with nu =
             `enskog.collision_rate`.
-
-        Returns
-        -------
-        ndarray, same shape as `equilibrium_collisions`, [1]
-            Collisions per particle s.
-
-        Raises
-        ------
-        ValueError
-            If `equilibrium_collisions` is negative.
-
-        Notes
-        -----
-        s is larger than the argument, because particles of equal speeds collide more often: initially by 2.3
-        % in 3D and 1.6 % in 2D. The accuracy is 0.5 %.
-
-        Examples
-        --------
-        >>> from gaspart import theory
-        >>> float(theory.relaxation(3).collisions(1.0).round(3))
-        1.021
         """
         tau = self._require_not_negative(equilibrium_collisions)
         beyond = np.maximum(tau - self.equilibrium_table[-1], 0.0)

@@ -38,35 +38,8 @@ _NODES = 32  # number of nodes of an integral over ln(eta), whose integrand is a
 
 
 def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
-    """Compute Z by the virial series to B10 and an extrapolation of its tail.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}, default 2
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Compressibility factor Z.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    `partial_sum` plus `virial.linear_tail` (literature and a computed extrapolation). For discs this is the
-    reference, up to eta = 0.70. For spheres it only tests the reference at low density.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.virial_with_tail(0.3).round(4))
-    2.0633
+    """Compute Z by the virial series to B10 plus `virial.linear_tail`: the reference for discs, up to eta =
+    0.70.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     return partial_sum(eta, HIGHEST_ORDER, dimension) + linear_tail(eta, dimension)
@@ -75,37 +48,8 @@ def virial_with_tail(packing_fraction: Numbers, dimension: int = 2) -> Values:
 def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the compressibility factor of the infinite fluid, by the reference equation.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Z = P / (rho k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    See Also
-    --------
-    compressibility_uncertainty : Standard uncertainty of this value.
-    finite_contact_value : Contact value of pairs for a finite number of particles.
-
-    Notes
-    -----
-    Discs: `virial_with_tail`. Spheres: `kolafa_labik_malijevsky`; states above 0.4915 are metastable.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.compressibility_factor([0.0, 0.3], dimension=2).round(4)
-    array([1.    , 2.0633])
+    Z = P / (rho k_B T). Discs: `virial_with_tail`. Spheres: `kolafa_labik_malijevsky`; states above 0.4915
+    are metastable. See also `compressibility_uncertainty` and `finite_contact_value`.
     """
     if checked_dimension(dimension) == 2:
         return virial_with_tail(packing_fraction, 2)
@@ -115,37 +59,12 @@ def compressibility_factor(packing_fraction: Numbers, dimension: int) -> Values:
 def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
     """Estimate the standard uncertainty of `compressibility_factor`.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty of Z (computed estimate).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     Discs: four contributions are added in quadrature. They are the uncertainties of the coefficients; the
     slope of the tail; the difference from Liu's independent equation, limited to the complete tail, because
     the series is more accurate at low density; and an error that both equations share near freezing, 0.4 % at
     eta = 0.65 and 10 % at 0.70. Spheres: the smaller of two bounds. One is the difference from another
     equation (4.3e-6 of Z up to eta = 0.445, 1e-5 up to 0.524). The other is the difference from the virial
     series to B10 plus its tail and the uncertainties of the coefficients (below 1e-6 for eta < 0.1).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> bool(theory.compressibility_uncertainty(0.3, dimension=3) < 2e-5)
-    True
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     coefficients = partial_sum_uncertainty(eta, HIGHEST_ORDER, dimension)
@@ -164,33 +83,8 @@ def compressibility_uncertainty(packing_fraction: Numbers, dimension: int) -> Va
 def contact_value(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the pair distribution at contact of the infinite fluid.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Contact value g(sigma); Enskog theory calls it chi.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    g(sigma) = (Z - 1) / (2^(d-1) eta) by the virial theorem (exact), with Z of `compressibility_factor`. At
-    eta = 0 the value is the limit 1.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.contact_value(0.3, dimension=3).round(4))
-    2.4867
+    Contact value g(sigma); Enskog theory calls it chi: g(sigma) = (Z - 1) / (2^(d-1) eta) by the virial
+    theorem (exact), with Z of `compressibility_factor`. At eta = 0 the value is the limit 1.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     excess = compressibility_factor(eta, dimension) - 1.0
@@ -211,32 +105,7 @@ def _slope_and_curvature(eta: np.ndarray, dimension: int) -> tuple[np.ndarray, n
 def reduced_compressibility(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute k_B T d rho / dP of the infinite fluid, its structure factor S(0).
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Reduced isothermal compressibility.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
     1 / (d(eta Z) / d eta) (exact), with Z of `compressibility_factor`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.reduced_compressibility(0.3, dimension=3).round(4))
-    0.0972
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     return 1.0 / _slope_and_curvature(eta, dimension)[0]
@@ -245,32 +114,8 @@ def reduced_compressibility(packing_fraction: Numbers, dimension: int) -> Values
 def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the adiabatic speed of sound of the infinite fluid.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Speed of sound in units of sqrt(k_B T / m).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    sqrt(d(eta Z)/d eta + 2 Z^2 / d); the heat capacity per particle is d/2 (exact).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.speed_of_sound(0.3, dimension=3).round(4))
-    4.5679
+    Speed of sound in units of sqrt(k_B T / m): sqrt(d(eta Z)/d eta + 2 Z^2 / d); the heat capacity per
+    particle is d/2 (exact).
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, _ = _slope_and_curvature(eta, dimension)
@@ -278,37 +123,8 @@ def speed_of_sound(packing_fraction: Numbers, dimension: int) -> Values:
 
 
 def adiabatic_temperature(packing_fraction: Numbers, initial: Numbers, dimension: int) -> Values:
-    """Compute the temperature after adiabatic compression divided by the initial temperature.
-
-    Parameters
-    ----------
-    packing_fraction : float or ndarray, [1]
-        Packing fraction eta after the compression, above 0, up to 0.70 for discs and 0.539 for spheres.
-    initial : float or ndarray, [1]
-        Packing fraction before the compression, in the same range.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, [1]
-        T / T_0.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    exp(2/d times the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of
-    `compressibility_factor`. It is (V_0 / V)^(2/d) if Z is 1.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.adiabatic_temperature(0.3, initial=0.1, dimension=3)), 4)
-    5.449
+    """Compute the temperature after adiabatic compression divided by the initial temperature. exp(2/d times
+    the integral of Z over ln eta), because d/2 N k_B dT = -P dV (exact), with Z of `compressibility_factor`.
     """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     start = np.log(checked_packing_fraction(initial, highest))
@@ -326,33 +142,8 @@ def finite_size_correction(
 ) -> Values:
     """Compute the difference in Z between a finite periodic system and the infinite system.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles, at least 2.
-    ensemble : {"dynamics", "canonical"}, default "dynamics"
-        Periodic run at fixed energy with zero total momentum ("dynamics"), or the canonical ensemble.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Z_N - Z_infinity, to first order in 1/N.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-    ValueError
-        If the ensemble is unknown, or if there are fewer than 2 particles.
-
-    Notes
-    -----
-    Terms of order 1/N^2 are neglected. Exponentially small terms are also neglected; they matter if the side
-    is only a few diameters (`finite_size_remainder`).
+    Z_N - Z_infinity, to first order in 1/N. Terms of order 1/N^2 are neglected. Exponentially small terms are
+    also neglected; they matter if the side is only a few diameters (`finite_size_remainder`).
 
     "canonical": in a periodic container the grand partition function is exp(P V / k_B T), up to terms that
     decrease exponentially with the side. For N particles the saddle point gives
@@ -373,6 +164,13 @@ def finite_size_correction(
     proportional to the normal speed. So Z_N - 1 is the canonical value times N / (N-1), and to first order in
     eta there is no correction. If the total momentum is not zero, E is the energy relative to the centre of
     mass.
+
+    Parameters
+    ----------
+    count : int
+        Number N of particles, at least 2.
+    ensemble : {"dynamics", "canonical"}, default "dynamics"
+        Periodic run at fixed energy with zero total momentum ("dynamics"), or the canonical ensemble.
 
     Examples
     --------
@@ -399,47 +197,17 @@ def finite_size_correction(
 def constant_enthalpy_factor(packing_fraction: Numbers, dimension: int, count: Numbers) -> Values:
     """Compute the pressure of N particles under a piston divided by the infinite fluid's.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : array_like
-        Number N of particles.
-
-    Returns
-    -------
-    ndarray, [1]
-        P V_0 / (N k_B <T> Z), with V_0 = <V> and Z of the infinite fluid at N / V_0.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The ensemble of constant pressure and enthalpy [1]_ has the weight Q(V) (H - P V)^(f/2 - 1), with f
-    degrees of freedom. The mean of the derivative of the weight with respect to V vanishes: <d ln Q / dV> = P
-    (f/2 - 1) <1 / (H - P V)>. This is expanded to second order in V - V_0. The variance of V is s V_0^2 / N
-    with 1/s = y' + 2 Z^2 / d and y = eta Z(eta). With the canonical correction of Q
+    P V_0 / (N k_B <T> Z), with V_0 = <V> and Z of the infinite fluid at N / V_0. The ensemble of constant
+    pressure and enthalpy (H. C. Andersen, J. Chem. Phys. 72, 2384 (1980)) has the weight Q(V) (H - P V)^(f/2
+    - 1), with f degrees of freedom. The mean of the derivative of the weight with respect to V vanishes: <d
+    ln Q / dV> = P (f/2 - 1) <1 / (H - P V)>. This is expanded to second order in V - V_0. The variance of V
+    is s V_0^2 / N with 1/s = y' + 2 Z^2 / d and y = eta Z(eta). With the canonical correction of Q
     (`finite_size_correction`) and f = d N, the ratio is
 
         1 + (s / N) [y' / Z + (2 / d) y' - eta y'' Z / (d y')].
 
     For an ideal gas the factor is 1 + 1/N, which is exact. The formula is of first order in 1/N. The
     temperature is 2 <E> / (d N).
-
-    References
-    ----------
-    .. [1] H. C. Andersen, J. Chem. Phys. 72, 2384 (1980).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.constant_enthalpy_factor(0.3, dimension=3, count=500)), 6)
-    1.000602
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     slope, curvature = _slope_and_curvature(eta, dimension)

@@ -23,42 +23,11 @@ _SMALL = 1e-3  # wave number below which a quotient of small numbers is replaced
 
 @check_ranges
 def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
-    """Compute S(k) of spheres from the Percus-Yevick equation.
-
-    Parameters
-    ----------
-    wave_number : array_like, [1/diameter]
-        Wave numbers k.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
-
-    Returns
-    -------
-    float or ndarray, same shape as `wave_number`, [1]
-        S(k) = 1 / (1 - rho c(k)).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The direct correlation function is -(a + b r + a eta r^3 / 2) inside the diameter and 0 outside, with a =
-    (1 + 2 eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 [1]_ [2]_. The integral is computed
-    by Gauss-Legendre quadrature, exact to rounding up to k = 100. S(0) is consistent with
-    `percus_yevick_compressibility`.
-
-    References
-    ----------
-    .. [1] M. S. Wertheim, Phys. Rev. Lett. 10, 321 (1963).
-    .. [2] E. Thiele, J. Chem. Phys. 39, 474 (1963).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.percus_yevick_structure_factor([0.0, 6.5], 0.3).round(4)
-    array([0.0938, 1.501 ])
+    """Compute S(k) of spheres from the Percus-Yevick equation. S(k) = 1 / (1 - rho c(k)). The direct
+    correlation function is -(a + b r + a eta r^3 / 2) inside the diameter and 0 outside, with a = (1 + 2
+    eta)^2 / (1 - eta)^4, b = -6 eta (1 + eta / 2)^2 / (1 - eta)^4 (M. S. Wertheim, Phys. Rev. Lett. 10, 321
+    (1963)) (E. Thiele, J. Chem. Phys. 39, 474 (1963)). The integral is computed by Gauss-Legendre quadrature,
+    exact to rounding up to k = 100.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     k = np.asarray(wave_number, dtype=float)
@@ -73,43 +42,12 @@ def percus_yevick_structure_factor(wave_number: Numbers, packing_fraction: float
 
 @check_ranges
 def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
-    """Compute g(r) of spheres from the Percus-Yevick equation, up to 5 diameters.
-
-    Parameters
-    ----------
-    distance : array_like, [diameter]
-        Distances r, at most 5.
-    packing_fraction : float, [1]
-        Packing fraction eta, from 0 to 0.539.
-
-    Returns
-    -------
-    float or ndarray, same shape as `distance`, [1]
-        Pair distribution g(r), which is 0 inside the diameter.
-
-    Raises
-    ------
-    SceneError
-        If `packing_fraction` is out of range or a distance is negative.
-    ValueError
-        If a distance is above 5.
-
-    Notes
-    -----
-    r g(r) is the inverse of Wertheim's Laplace transform [1]_. With L = (1 + eta / 2) t + 1 + 2 eta and S =
-    (1 - eta)^2 t^3 + 6 eta (1 - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms
-    are the residues of (-12 eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are
-    computed together, as an integral over circles around all three zeros.
-
-    References
-    ----------
-    .. [1] M. S. Wertheim, Phys. Rev. Lett. 10, 321 (1963).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.percus_yevick_rdf([0.9, 1.0, 2.0], 0.3).round(4)
-    array([0.    , 2.3469, 1.0057])
+    """Compute g(r) of spheres from the Percus-Yevick equation, up to 5 diameters. Pair distribution g(r),
+    which is 0 inside the diameter: r g(r) is the inverse of Wertheim's Laplace transform (M. S. Wertheim,
+    Phys. Rev. Lett. 10, 321 (1963)). With L = (1 + eta / 2) t + 1 + 2 eta and S = (1 - eta)^2 t^3 + 6 eta (1
+    - eta) t^2 + 18 eta^2 t - 12 eta (1 + 2 eta), it is a sum over n < r. The terms are the residues of (-12
+    eta)^(n-1) t (L / S)^n e^{t (r - n)} at the three zeros of S. The residues are computed together, as an
+    integral over circles around all three zeros.
     """
     eta = float(checked_packing_fraction(packing_fraction, METASTABLE_SPHERES))
     r = np.asarray(distance, dtype=float)
@@ -128,9 +66,8 @@ def percus_yevick_rdf(distance: Numbers, packing_fraction: float) -> Values:
 
 @cache
 def _circles(eta: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return nodes (n,) on circles around the zeros of S, their weights, and L / S.
-
-    The weights are for integrals divided by 2 pi i.
+    """Return nodes (n,) on circles around the zeros of S, their weights for integrals over 2 pi i,
+    and L / S.
     """
     linear = 6.0 * eta * (1.0 - eta)
     cubic = np.array([(1.0 - eta) ** 2, linear, 18.0 * eta**2, -12.0 * eta * (1.0 + 2.0 * eta)])
@@ -169,10 +106,7 @@ def _verlet_weis(eta: float) -> tuple[float, float, float, float]:
 
 
 def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -> np.ndarray:
-    """Return the contribution to S(k) of pairs between the smaller diameter and 1.
-
-    The result is 24 eta times the integral of r^2 g(r) sin(kr) / (kr).
-    """
+    """Return the contribution to S(k) of pairs between the smaller diameter and 1."""
     nodes, weights = np.polynomial.legendre.leggauss(12)
     r = 0.5 * (1.0 - diameter) * (nodes + 1.0) + diameter
     g = percus_yevick_rdf(r / diameter, effective)
@@ -184,41 +118,18 @@ def _overlapping(k: np.ndarray, eta: float, effective: float, diameter: float) -
 def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
     """Compute g(r) of spheres by the theory of Verlet and Weis.
 
+    Pair distribution g(r), which is 0 inside the diameter: g(r) is the Percus-Yevick function at the packing
+    fraction eta - eta^2 / 16, with the corresponding smaller diameter, plus A / r exp(-mu (r - 1)) cos(mu (r
+    - 1)) beyond contact (L. Verlet and J.-J. Weis, Phys. Rev. A 5, 939 (1972)). A and mu do not come from
+    fitted formulas. They follow from the conditions that the contact value and the compressibility are equal
+    to Carnahan and Starling's (as in a public program for integral equations).
+
     Parameters
     ----------
     distance : array_like, [diameter]
         Distances r, at most 4.9.
     packing_fraction : float, [1]
         Packing fraction eta, above 0 and at most 0.539.
-
-    Returns
-    -------
-    float or ndarray, same shape as `distance`, [1]
-        Pair distribution g(r), which is 0 inside the diameter.
-
-    Raises
-    ------
-    SceneError
-        If `packing_fraction` is above its range or negative, or a distance is negative.
-    ValueError
-        If `packing_fraction` is 0 or a distance is above its range.
-
-    Notes
-    -----
-    g(r) is the Percus-Yevick function at the packing fraction eta - eta^2 / 16, with the corresponding
-    smaller diameter, plus A / r exp(-mu (r - 1)) cos(mu (r - 1)) beyond contact [1]_. A and mu do not come
-    from fitted formulas. They follow from the conditions that the contact value and the compressibility are
-    equal to Carnahan and Starling's (as in a public program for integral equations).
-
-    References
-    ----------
-    .. [1] L. Verlet and J.-J. Weis, Phys. Rev. A 5, 939 (1972).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.verlet_weis_rdf([0.9, 1.0, 2.0], 0.3).round(4)
-    array([0.    , 2.4781, 1.0117])
     """
     effective, diameter, amplitude, rate = _of(packing_fraction)
     r = np.asarray(distance, dtype=float)
@@ -231,35 +142,13 @@ def verlet_weis_rdf(distance: Numbers, packing_fraction: float) -> Values:
 def verlet_weis_structure_factor(wave_number: Numbers, packing_fraction: float) -> Values:
     """Compute S(k) of spheres by the theory of Verlet and Weis.
 
+    S(k) that corresponds to `verlet_weis_rdf`. The Fourier transform of `verlet_weis_rdf` is a closed form,
+    except for pairs closer than a diameter, whose contribution is subtracted by numerical integration.
+
     Parameters
     ----------
-    wave_number : array_like, [1/diameter]
-        Wave numbers k.
     packing_fraction : float, [1]
         Packing fraction eta, above 0 and at most 0.539.
-
-    Returns
-    -------
-    float or ndarray, same shape as `wave_number`, [1]
-        S(k) that corresponds to `verlet_weis_rdf`.
-
-    Raises
-    ------
-    SceneError
-        If `packing_fraction` is above its range or negative, or a wave number is negative.
-    ValueError
-        If `packing_fraction` is 0.
-
-    Notes
-    -----
-    The Fourier transform of `verlet_weis_rdf` is a closed form, except for pairs closer than a diameter,
-    whose contribution is subtracted by numerical integration.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> theory.verlet_weis_structure_factor([0.0, 6.5], 0.3).round(4)
-    array([0.0976, 1.4913])
     """
     eta = float(packing_fraction)
     effective, diameter, amplitude, rate = _of(eta)

@@ -21,33 +21,16 @@ from gaspart.theory.state import (
 def literature(quantity: str, dimension: int) -> np.recarray:
     """Return published values of hard discs and spheres that other programs measured.
 
+    One row per value. The fields are attributes of the array: `packing_fraction`; `count`, the number of
+    particles; `container`, periodic: "cube", "square", or the sides of a triangular lattice such as "29 x 30"
+    discs; `value` and its standard `error`, with diameter = mass = k_B T = 1; `source`. No value is corrected
+    for the number of particles. The provenance of all values is in `data/README.md`. See also `measurements`.
+
     Parameters
     ----------
     quantity : str
         For spheres "Z", "Z_crystal" (face-centred cubic), "diffusion", "viscosity" or "conductivity". For
         discs "pressure", from the liquid to the hexatic phase.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    numpy.recarray
-        One row per value. The fields are attributes of the array: `packing_fraction`; `count`, the number of
-        particles; `container`, periodic: "cube", "square", or the sides of a triangular lattice such as "29 x
-        30" discs; `value` and its standard `error`, with diameter = mass = k_B T = 1; `source`.
-
-    Raises
-    ------
-    SceneError
-        If the table does not contain the quantity.
-
-    See Also
-    --------
-    measurements : Values measured by this program.
-
-    Notes
-    -----
-    No value is corrected for the number of particles. The provenance of all values is in `data/README.md`.
 
     Examples
     --------
@@ -62,36 +45,18 @@ def literature(quantity: str, dimension: int) -> np.recarray:
 def measurements(quantity: str, dimension: int) -> np.recarray:
     """Return values of hard discs and spheres measured by this program, for citation.
 
-    Parameters
-    ----------
-    quantity : {"Z", "contact_value", "viscosity", "bulk_viscosity", "conductivity", "diffusion"}
-        Quantity; "diffusion" exists for spheres only.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    numpy.recarray
-        One row per value, with the fields and units of `literature`. `source` is the figure of the
-        reproduction.
-
-    Raises
-    ------
-    SceneError
-        If the table does not contain the quantity.
-
-    See Also
-    --------
-    literature : Values measured by other programs.
-
-    Notes
-    -----
+    One row per value, with the fields and units of `literature`. `source` is the figure of the reproduction.
     All values are for fluids. "Z" and "contact_value" are for the infinite system; the finite-size effect is
     subtracted to first order in 1/N. "viscosity", "bulk_viscosity" and "conductivity" are Green-Kubo
     integrals up to 16 collisions of a particle (30 in dense gases). "diffusion" is N / (N - 1) times the
     diffusion coefficient of particles with zero total momentum. The last four quantities are for `count`
     particles. For discs they grow with the logarithm of time and of the container. `data/README.md` states
     the commit and the command that made the table.
+
+    Parameters
+    ----------
+    quantity : {"Z", "contact_value", "viscosity", "bulk_viscosity", "conductivity", "diffusion"}
+        Quantity; "diffusion" exists for spheres only.
 
     Examples
     --------
@@ -106,36 +71,19 @@ def measurements(quantity: str, dimension: int) -> np.recarray:
 def small_systems(quantity: str, dimension: int) -> np.recarray:
     """Return values measured by this program for few particles in a periodic square or cube.
 
+    One row per system, with the fields of `literature`. Units are diameter = mass = k_B T = 1, with k_B T = 2
+    E / (d (N - 1)). "contact_value": density of pairs at contact divided by N (N - 1) / V^2. "Z" and
+    "collision_rate" follow from it exactly (`finite_contact_value`): Z is the canonical value, which
+    `gaspart.analysis.compressibility_factor` measures; the rate is 2 N_coll / (N t). "diffusion": slope of
+    the mean-squared displacement relative to the centre of mass, divided by 2 d. Errors are standard
+    deviations over independent runs. In six rows, dense spheres have several states, and no run changes from
+    one state to another. Their errors, 4 to 86 %, are standard deviations of single runs. Recipe and seeds
+    are in `data/README.md`.
+
     Parameters
     ----------
     quantity : {"contact_value", "Z", "collision_rate", "diffusion"}
         Quantity of equal particles at fixed energy and zero total momentum.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    numpy.recarray
-        One row per system, with the fields of `literature`.
-
-    Raises
-    ------
-    SceneError
-        If the table does not contain the quantity.
-
-    See Also
-    --------
-    finite_contact_value : Contact value interpolated between the rows of the table.
-
-    Notes
-    -----
-    Units are diameter = mass = k_B T = 1, with k_B T = 2 E / (d (N - 1)). "contact_value": density of pairs
-    at contact divided by N (N - 1) / V^2. "Z" and "collision_rate" follow from it exactly
-    (`finite_contact_value`): Z is the canonical value, which `gaspart.analysis.compressibility_factor`
-    measures; the rate is 2 N_coll / (N t). "diffusion": slope of the mean-squared displacement relative to
-    the centre of mass, divided by 2 d. Errors are standard deviations over independent runs. In six rows,
-    dense spheres have several states, and no run changes from one state to another. Their errors, 4 to 86 %,
-    are standard deviations of single runs. Recipe and seeds are in `data/README.md`.
 
     Examples
     --------
@@ -178,34 +126,9 @@ _STEP = 2e-3  # step of central differences of the compressibility
 def excess_free_energy(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the excess free energy per particle from the equation of state.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        F_excess / (N k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The integral of (Z - 1) / eta' from 0 to eta (exact thermodynamics), with Z of `compressibility_factor`,
-    by Gauss-Legendre quadrature. Multiplied by -N, it is the logarithm of the configuration integral Q of
-    source C, Eq. 46, for a large container.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.excess_free_energy(0.3, dimension=3).round(4))
-    1.9015
+    F_excess / (N k_B T). The integral of (Z - 1) / eta' from 0 to eta (exact thermodynamics), with Z of
+    `compressibility_factor`, by Gauss-Legendre quadrature. Multiplied by -N, it is the logarithm of the
+    configuration integral Q of source C, Eq. 46, for a large container.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     nodes, weights = np.polynomial.legendre.leggauss(40)
@@ -216,71 +139,16 @@ def excess_free_energy(packing_fraction: Numbers, dimension: int) -> Values:
 def excess_chemical_potential(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the excess chemical potential from the equation of state.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Excess potential mu_excess / (k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    See Also
-    --------
-    chemical_potential_uncertainty : Standard uncertainty of this value.
-
-    Notes
-    -----
-    Z - 1 + `excess_free_energy` (exact thermodynamics).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.excess_chemical_potential(0.3, dimension=3).round(4))
-    4.8854
+    Excess potential mu_excess / (k_B T). Z - 1 + `excess_free_energy` (exact thermodynamics). See also
+    `chemical_potential_uncertainty`.
     """
     excess = compressibility_factor(packing_fraction, dimension) - 1.0
     return excess + excess_free_energy(packing_fraction, dimension)
 
 
 def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the standard uncertainty of `excess_chemical_potential`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty of mu_excess / (k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The uncertainty of Z at this and all lower packing fractions, assumed to have the same sign everywhere
-    (computed estimate).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(f"{theory.chemical_potential_uncertainty(0.3, dimension=3):.2g}")
-    2.4e-05
+    """Compute the standard uncertainty of `excess_chemical_potential`; errors of Z are assumed to have the
+    same sign.
     """
     eta = checked_packing_fraction(packing_fraction, HIGHEST_PACKING_FRACTION[checked_dimension(dimension)])
     nodes, weights = np.polynomial.legendre.leggauss(40)
@@ -292,86 +160,23 @@ def chemical_potential_uncertainty(packing_fraction: Numbers, dimension: int) ->
 def activity(packing_fraction: Numbers, dimension: int) -> Values:
     """Compute the activity from the packing fraction.
 
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Activity eta exp(mu_excess / k_B T).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    See Also
-    --------
-    packing_fraction_at : Inverse function.
-
-    Notes
-    -----
-    mu_excess is `excess_chemical_potential`.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.activity(0.3, dimension=3).round(2))
-    39.7
+    Activity eta exp(mu_excess / k_B T): mu_excess is `excess_chemical_potential`. See also
+    `packing_fraction_at`.
     """
     return np.asarray(packing_fraction) * np.exp(excess_chemical_potential(packing_fraction, dimension))
 
 
 @check_ranges
 def insertion_finite_size_correction(packing_fraction: Numbers, dimension: int, count: int) -> Values:
-    """Compute the shift of the insertion potential due to the finite number of particles.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.70 for discs, to 0.539 for spheres.
-    dimension : {2, 3}
-        Discs or spheres.
-    count : int
-        Number N of particles.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        -ln P_N - mu_excess / (k_B T), to first order in 1/N, in a periodic container. P_N is the probability
-        that a random position in the container is free for another particle.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    See Also
-    --------
-    mixture_insertion_correction : Correction for a mixture.
-
-    Notes
-    -----
-    With the configuration integral Q_N as in `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
+    """Compute the shift of the insertion potential due to the finite number of particles. The value is -ln
+    P_N - mu_excess / (k_B T), to first order in 1/N, in a periodic container. P_N is the probability that a
+    random position in the container is free for another particle. With the configuration integral Q_N as in
+    `state.finite_size_correction`, P_N = Q_(N+1) / (V Q_N) is
 
         (1 / 2N) [1 / S - 1 + eta S' / S],    where S = `reduced_compressibility` and S' is its derivative
         with respect to eta
 
-    [1]_. To first order in the density the correction is zero, which is exact.
-
-    References
-    ----------
-    .. [1] J. I. Siepmann, I. R. McDonald and D. Frenkel, J. Phys.: Condens. Matter 4, 679 (1992).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.insertion_finite_size_correction(0.3, dimension=3, count=100).round(4))
-    0.0345
+    To first order in the density the correction is zero, which is exact.
     """
     highest = HIGHEST_PACKING_FRACTION[checked_dimension(dimension)]
     eta = np.clip(checked_packing_fraction(packing_fraction, highest), _STEP, highest - _STEP)
@@ -393,34 +198,12 @@ def _table(dimension: int) -> tuple[np.ndarray, np.ndarray]:
 def packing_fraction_at(activity: Numbers, dimension: int) -> Values:
     """Compute the packing fraction from the activity.
 
+    Packing fraction eta, with a relative error of at most 1e-5. See also `activity`.
+
     Parameters
     ----------
     activity : array_like, [1]
         Activity eta exp(mu_excess / k_B T), above 0.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `activity`, [1]
-        Packing fraction eta, with a relative error of at most 1e-5.
-
-    Raises
-    ------
-    SceneError
-        If `dimension` is not 2 or 3, or if an activity is negative or not finite.
-    ValueError
-        If an activity is above the range of the reference equation.
-
-    See Also
-    --------
-    activity : Inverse function.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.packing_fraction_at(15.0, dimension=3).round(4))
-    0.2697
     """
     activity = np.asarray(activity, dtype=float)
     eta, table = _table(checked_dimension(dimension))

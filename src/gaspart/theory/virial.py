@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.theory.geometry import Numbers, Values, checked_dimension, checked_packing_fraction
 
 HIGHEST_ORDER = 10
@@ -53,10 +53,11 @@ def _all_coefficients(dimension: int) -> tuple[np.ndarray, np.ndarray]:
 def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.ndarray, np.ndarray]:
     """Return the virial coefficients of discs or spheres and their standard uncertainties.
 
+    The coefficients are exact up to B4 (closed forms). B5 to B10 are from Clisby and McCoy (N. Clisby and B.
+    M. McCoy, J. Stat. Phys. 122, 15 (2006)) (literature).
+
     Parameters
     ----------
-    dimension : {2, 3}
-        Discs or spheres.
     order : int, default 10
         Number of coefficients, from 1 to 10.
 
@@ -66,21 +67,6 @@ def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.
         Coefficients b_n of eta^(n-1), read-only; element n - 1 belongs to B_n, element 0 is 1.
     uncertainties : ndarray, shape (order,), [1]
         Standard uncertainties of b_n, read-only.
-
-    Raises
-    ------
-    SceneError
-        If `dimension` is not 2 or 3. SceneError is a ValueError.
-    ValueError
-        If `order` is out of range.
-
-    Notes
-    -----
-    The coefficients are exact up to B4 (closed forms). B5 to B10 are from Clisby and McCoy [1]_ (literature).
-
-    References
-    ----------
-    .. [1] N. Clisby and B. M. McCoy, J. Stat. Phys. 122, 15 (2006).
 
     Examples
     --------
@@ -99,36 +85,14 @@ def virial_coefficients(dimension: int, order: int = HIGHEST_ORDER) -> tuple[np.
 def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values:
     """Compute Z by the virial series up to the coefficient B_order.
 
+    Sum of b_n eta^(n-1), n = 1 to `order`. The sum approximates Z only if the first neglected term is small.
+
     Parameters
     ----------
     packing_fraction : array_like, [1]
         Packing fraction eta, from 0 to close packing.
     order : int
         Order of the last coefficient, from 1 to 10.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Partial sum.
-
-    Raises
-    ------
-    SceneError
-        If `packing_fraction` or `dimension` is out of range.
-    ValueError
-        If `order` is out of range.
-
-    Notes
-    -----
-    Sum of b_n eta^(n-1), n = 1 to `order`. The sum approximates Z only if the first neglected term is small.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.partial_sum(0.1, 5, dimension=3).round(4))
-    1.5212
     """
     coefficients, _ = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
@@ -136,38 +100,8 @@ def partial_sum(packing_fraction: Numbers, order: int, dimension: int) -> Values
 
 
 def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: int) -> Values:
-    """Compute the standard uncertainty of `partial_sum` from the uncertainties of the coefficients.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to close packing.
-    order : int
-        Order of the last coefficient, from 1 to 10.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty.
-
-    Raises
-    ------
-    SceneError
-        If `packing_fraction` or `dimension` is out of range.
-    ValueError
-        If `order` is out of range.
-
-    Notes
-    -----
-    The errors of the coefficients are assumed to be independent. The truncation error is not included.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(f"{theory.partial_sum_uncertainty(0.3, 10, dimension=3):.2g}")
-    1.1e-05
+    """Compute the standard uncertainty of `partial_sum` from independent uncertainties of the
+    coefficients.
     """
     _, uncertainties = virial_coefficients(dimension, order)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])
@@ -175,40 +109,10 @@ def partial_sum_uncertainty(packing_fraction: Numbers, order: int, dimension: in
 
 
 def linear_tail(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the terms beyond B10, if b_n grows linearly with the last known difference.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to close packing.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Terms of Z beyond B10.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    See Also
-    --------
-    linear_tail_uncertainty : Standard uncertainty of this value.
-
-    Notes
-    -----
-    The result is a computed extrapolation: b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 /
-    (1-eta) + (b_10 - b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), so this
-    is a good estimate up to eta = 0.65. In 3D they still grow by about 2 per order, so this is a lower bound.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> float(theory.linear_tail(0.5, dimension=2).round(4))
-    0.0236
+    """Compute the terms beyond B10, if b_n grows linearly with the last known difference. The result is a
+    computed extrapolation: b_(10+k) = b_10 + k (b_10 - b_9), so the tail is eta^10 [b_10 / (1-eta) + (b_10 -
+    b_9) / (1-eta)^2]. In 2D the differences converge (0.989, 0.967, 0.953, 0.944), so this is a good estimate
+    up to eta = 0.65. In 3D they still grow by about 2 per order, so this is a lower bound.
     """
     coefficients, _ = virial_coefficients(dimension)
     eta = checked_packing_fraction(packing_fraction, CLOSE_PACKING[dimension])

@@ -32,7 +32,6 @@ from gaspart.theory.geometry import (
     Values,
     check_ranges,
     checked_dimension,
-    checked_packing_fraction,
     number_density,
 )
 from gaspart.theory.state import compressibility_factor, compressibility_uncertainty
@@ -50,9 +49,9 @@ _SHAPES: dict[int, tuple[tuple[float, ...], ...]] = {
     ),
 }
 """Polynomials in eta: gamma, tau and kappa times (1 - eta)^d divided by their second order. They follow from
-the virial coefficients and the cluster integrals of three to five centres (`film.cluster_integrals`, 6 to 12
-million samples each; the known bulk integral is a control variate). The last digit is accurate to one or two
-units. In 3D the last coefficients of the rows are accurate to 0.1, 0.6 and 4.
+the virial coefficients and the cluster integrals of three to five centres (`tests/theory/clusters.py`, 6 to
+12 million samples each; the known bulk integral is a control variate). The last digit is accurate to one or
+two units. In 3D the last coefficients of the rows are accurate to 0.1, 0.6 and 4.
 """
 _OPPOSITE = np.array(
     [[0.1, 0.2, 0.3, 0.4, 0.49], [-6.7, -5.05, -3.15, -2.6, -2.2], [3.0, 1.9, 1.75, 1.35, 1.0]]
@@ -73,10 +72,7 @@ _STRETCH = 1e-3  # relative step in length
 
 
 def _element(packing_fraction: Numbers, dimension: int, kind: int, further: float = 0.0) -> Values:
-    """Return gamma, tau or kappa (kind 0, 1, 2).
-
-    further : coefficient of eta^4 in its polynomial
-    """
+    """Return gamma, tau or kappa (kind 0, 1, 2); `further` is the coefficient of eta^4 in its polynomial."""
     eta = np.asarray(packing_fraction, dtype=float)
     shape = np.polynomial.polynomial.polyval(eta, (*_SHAPES[dimension][kind], further))
     scale = _SECOND_ORDER[dimension][kind] * number_density(eta, dimension) ** 2
@@ -88,87 +84,18 @@ def _estimate_neglected(dimension: int, kind: int) -> float:
     return max(map(abs, _SHAPES[dimension][kind][-2:]))
 
 
-def surface_tension(packing_fraction: Numbers, dimension: int) -> Values:
-    """Compute the surface tension of the fluid at a hard wall.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.49.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Surface tension gamma sigma^(d-1) / k_B T (negative). The area of the wall is the area that centres
-        can touch.
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The result is exact to fifth order in the density, multiplied by (1 - eta)^-d (computed, `clusters`). For
-    spheres it is above White Bear II [1]_ by 0.3 % at eta = 0.2 and by 1.2 % at 0.3 (tested).
-
-    References
-    ----------
-    .. [1] H. Hansen-Goos and R. Roth, J. Phys. Condens. Matter 18, 8413 (2006).
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.surface_tension(0.3, dimension=3)), 4)
-    -0.4992
-    """
-    eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    return _element(eta, checked_dimension(dimension), 0)
-
-
-def surface_tension_uncertainty(packing_fraction: Numbers, dimension: int) -> Values:
-    """Estimate the standard uncertainty of `surface_tension`.
-
-    Parameters
-    ----------
-    packing_fraction : array_like, [1]
-        Packing fraction eta, from 0 to 0.49.
-    dimension : {2, 3}
-        Discs or spheres.
-
-    Returns
-    -------
-    ndarray, same shape as `packing_fraction`, [1]
-        Standard uncertainty (an estimate).
-
-    Raises
-    ------
-    SceneError
-        If an argument is out of range.
-
-    Notes
-    -----
-    The uncertainty is the contribution of the first neglected coefficient, which is assumed to equal the
-    larger of the last two known coefficients.
-
-    Examples
-    --------
-    >>> from gaspart import theory
-    >>> round(float(theory.surface_tension_uncertainty(0.3, dimension=3)), 4)
-    0.0036
-    """
-    eta = checked_packing_fraction(packing_fraction, _DENSEST)
-    further = _estimate_neglected(checked_dimension(dimension), 0)
-    return np.abs(_element(eta, dimension, 0, further) - _element(eta, dimension, 0))
-
-
 @check_ranges
 def wall_pressure(
     length: float | Sequence[float], density: float, count: int, dimension: int, axes: int
 ) -> tuple[float, float]:
     """Compute the mean pressure of N particles on the walls of a container, and its uncertainty.
+
+    The result is for the canonical ensemble: the equations of the module `walls` with the canonical
+    correction of first order in 1/N, including surfaces. The uncertainty has four contributions. The first is
+    the equation of state. The second is surfaces, edges and corners, estimated as in
+    `surface_tension_uncertainty`. The third is the effect of opposite walls on each other, which decreases
+    exponentially with their distance (beyond four diameters it begins at sixth order in the density). The
+    fourth is the square of the relative correction in 1/N, for the next order.
 
     Parameters
     ----------
@@ -177,10 +104,6 @@ def wall_pressure(
         sequence (axes,), first the distance between the walls on which the pressure acts.
     density : float, [1/length^d]
         Number of particles per volume accessible to centres, in units of the diameter.
-    count : int
-        Number N of particles.
-    dimension : {2, 3}
-        Discs or spheres.
     axes : int
         Number of axes along which the container has walls, from 1 to `dimension`.
 
@@ -190,23 +113,6 @@ def wall_pressure(
         Force on a wall divided by the area accessible to centres, in k_B T / sigma^d.
     uncertainty : float, [1]
         Standard uncertainty of the pressure, in k_B T / sigma^d.
-
-    Raises
-    ------
-    SceneError
-        If the distance between walls is below two diameters, if the uncertainty exceeds a tenth of the
-        pressure, or if another argument is out of range.
-    ValueError
-        If the container does not have this number of axes, or if the fluid would be denser than eta = 0.49.
-
-    Notes
-    -----
-    The result is for the canonical ensemble: the equations of the module `walls` with the canonical
-    correction of first order in 1/N, including surfaces. The uncertainty has four contributions. The first is
-    the equation of state. The second is surfaces, edges and corners, estimated as in
-    `surface_tension_uncertainty`. The third is the effect of opposite walls on each other, which decreases
-    exponentially with their distance (beyond four diameters it begins at sixth order in the density). The
-    fourth is the square of the relative correction in 1/N, for the next order.
 
     Examples
     --------
@@ -241,9 +147,8 @@ def wall_pressure(
 
 
 def _opposite(eta: float, dimension: int, length: float) -> float:
-    """Return the relative change of the pressure on a wall due to the opposite wall.
-
-    Discs are treated as spheres at the same density relative to freezing.
+    """Return the relative change of the pressure on a wall due to the opposite wall; discs as spheres equally
+    far from freezing.
     """
     fractions, amplitudes, decays = _OPPOSITE
     dense = eta * _FREEZING[3] / _FREEZING[dimension]
@@ -276,10 +181,7 @@ class _Container:
         return sum(float(_element(eta, self.dimension, kind, more)) * size for size, kind, more in parts)
 
     def rise(self, eta: float) -> float:
-        """Return d eta / d mu multiplied by the volume of a particle.
-
-        The result is rho / (dP / d rho) in the bulk fluid.
-        """
+        """Return d eta / d mu times the volume of a particle, rho / (dP / d rho)."""
         slope = _slope(lambda x: x * compressibility_factor(x, self.dimension), eta)
         return float(number_density(eta, self.dimension)) / slope
 
@@ -321,12 +223,10 @@ def _in_container(
 
 
 def _canonical(stretch: Callable[[float], _Container], density: float, count: int) -> float:
-    """Return the canonical minus the grand canonical pressure of `count` particles.
-
-    The saddle point gives the term of N particles in the grand partition function: ln Q_N = -Omega - N mu -
-    ln(2 pi dN/dmu) / 2. The result is the derivative of the last term with respect to the length of the first
-    axis at fixed N, including surfaces. It is of first order in 1/N, as in `state.finite_size_correction` for
-    a periodic container.
+    """Return the canonical minus the grand canonical pressure of `count` particles. The saddle point gives
+    the term of N particles in the grand partition function: ln Q_N = -Omega - N mu - ln(2 pi dN/dmu) / 2. The
+    result is the derivative of the last term with respect to the length of the first axis at fixed N,
+    including surfaces.
     """
     logarithms = []
     for factor in (1.0 + _STRETCH, 1.0 - _STRETCH):

@@ -68,10 +68,9 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 
 
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
-    """Return the names of the cumulative sums in a file of this engine.
-
-    The sums start at time 0, and each sum is a variable of the file. Sums that only other engines compute are
-    omitted, because they would be zero.
+    """Return the names of the cumulative sums in a file of this engine. The sums start at time 0, and each
+    sum is a variable of the file. Sums that only other engines compute are omitted, because they would be
+    zero.
 
     tallies : optional tallies of the run.
     """
@@ -80,10 +79,9 @@ def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str
 
 
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
-    """Return the variables of a frame that describe the container, which may end at a piston.
-
-    In two dimensions the height of the cell along z is its longest side. The reason is that other programs
-    assume that the cell is periodic along z as well, and some limit distances to half of the smallest side.
+    """Return the variables of a frame that describe the container, which may end at a piston. In two
+    dimensions the height of the cell along z is its longest side. The reason is that other programs assume
+    that the cell is periodic along z as well, and some limit distances to half of the smallest side.
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
@@ -175,9 +173,7 @@ class Layout:
         particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """Return the bytes of a file without frames.
-
-        The first attributes are `BOOKKEEPING`.
+        """Return the bytes of a file without frames. The first attributes are `BOOKKEEPING`.
 
         particles : radius, mass and type of each particle
         initial : properties of the particles at time 0, in double precision, if the user supplied an initial
@@ -231,9 +227,8 @@ def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 
 def _frames_begin(header: bytes) -> int:
-    """Return the offset of the first variable of a frame, time.
-
-    This offset is stored in the header, as the last value before the name of the next variable.
+    """Return the offset of the first variable of a frame, time. This offset is stored in the header, as the
+    last value before the name of the next variable.
     """
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
@@ -241,19 +236,16 @@ def _frames_begin(header: bytes) -> int:
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
-    """Return the offset of the value of a numerical attribute.
-
-    Before the value, the header contains the name padded to words, the type, and the number of values.
+    """Return the offset of the value of a numerical attribute. Before the value, the header contains the name
+    padded to words, the type, and the number of values.
     """
     return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
 
 def stored_header(file: BinaryIO) -> bytes:
-    """Return the header of a file, with the number of frames set to 0.
-
-    The result is the header that `Layout.header` made.
-
-    Raises ValueError, with the violated rule, if the file is damaged or from another program.
+    """Return the header of a file, with the number of frames set to 0. The result is the header that
+    `Layout.header` made. Raises ValueError, with the violated rule, if the file is damaged or from another
+    program.
     """
     file.seek(0)
     head = file.read(_HEAD)
@@ -292,10 +284,9 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 
 
 def is_blank(file: BinaryIO) -> bool:
-    """Return True if a file is empty, or if its header is incomplete.
-
-    The header is incomplete if its first word is missing, because this word is written last. The bytes after
-    it are compared, too, because a file of zeros may belong to another program.
+    """Return True if a file is empty, or if its header is incomplete. The header is incomplete if its first
+    word is missing, because this word is written last. The bytes after it are compared, too, because a file
+    of zeros may belong to another program.
     """
     file.seek(0)
     start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
@@ -326,9 +317,8 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 
 
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
-    """Return the first frame that is damaged or truncated; None if all are correct.
-
-    All these frames are read. Computing the CRC-32 takes about as long as copying the frames in memory.
+    """Return the first frame that is damaged or truncated; None if all are correct. All these frames are
+    read. Computing the CRC-32 takes about as long as copying the frames in memory.
 
     file : descriptor
     numbers : frames to test
@@ -355,9 +345,8 @@ def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]
 
 
 class CheckedFrames:
-    """Record of the undamaged frames of an open trajectory.
-
-    Each frame is checked once, before its first use.
+    """Record of the undamaged frames of an open trajectory. Each frame is checked once, before its
+    first use.
     """
 
     def __init__(self, file: BinaryIO, header: bytes, frames: int) -> None:
@@ -367,10 +356,7 @@ class CheckedFrames:
         self.close = weakref.finalize(self, os.close, self._file)
 
     def find_damage(self, numbers: np.ndarray) -> int | None:
-        """Return the index of the first damaged frame among these frames, or None.
-
-        May raise OSError.
-        """
+        """Return the index of the first damaged frame among these frames, or None. May raise OSError."""
         new = np.unique(numbers[~self._checked[numbers]])
         for part in np.split(new, np.flatnonzero(np.diff(new) > 1) + 1) if new.size else []:
             stretch = range(int(part[0]), int(part[-1]) + 1)
@@ -382,9 +368,8 @@ class CheckedFrames:
 
 
 class Frames:
-    """Frames of an unbuffered open file, which is first truncated to `kept` frames.
-
-    If `kept` is 0, the header is written too. Every method may raise OSError.
+    """Frames of an unbuffered open file, which is first truncated to `kept` frames. If `kept` is 0, the
+    header is written too. Every method may raise OSError.
     """
 
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
@@ -399,10 +384,7 @@ class Frames:
         file.seek(0, os.SEEK_END)
 
     def _begin(self, header: bytes) -> None:
-        """Write the header with its first word last.
-
-        If the first word is present, the header is complete.
-        """
+        """Write the header with its first word last. If the first word is present, the header is complete."""
         self._file.truncate(0)
         self._file.seek(0)
         try:
@@ -413,9 +395,8 @@ class Frames:
         os.pwrite(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
-        """Write a frame, with a value for every variable of the layout.
-
-        Vectors may have 2 or 3 components.
+        """Write a frame, with a value for every variable of the layout. Vectors may have 2 or 3
+        components.
         """
         for name in self._frame.dtype.names[:-1]:
             array = np.asarray(values[name])

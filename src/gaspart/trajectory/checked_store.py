@@ -41,11 +41,9 @@ class Trajectory(xr.Dataset):
 
 
 class CheckedStore(NetCDF4DataStore):
-    """Variables of a trajectory; checksums of frames are verified before use.
-
-    Times of frames are read when the file is opened. At this moment, checksums are verified only for frames
-    whose times are not multiples of `interval`, because verifying all frames would require reading the
-    complete file.
+    """Variables of a trajectory; checksums of frames are verified before use. Times of frames are read when
+    the file is opened. At this moment, checksums are verified only for frames whose times are not multiples
+    of `interval`, because verifying all frames would require reading the complete file.
     """
 
     def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:

@@ -62,11 +62,9 @@ def remove_checkpoint(path: Path) -> None:
 
 
 def write_checkpoint(path: Path, header: bytes, frames: int, arrays: dict[str, Any]) -> None:
-    """Write the checkpoint of a run, identified by the header of its trajectory.
-
-    The file is a zip file of arrays (.npz). Its comment, at the end, is a checksum of all bytes before the
-    comment. If the file at `path` is not a checkpoint, it is not replaced, and SceneError is raised. May
-    raise OSError.
+    """Write the checkpoint of a run, identified by the header of its trajectory. The file is a zip file of
+    arrays (.npz). Its comment, at the end, is a checksum of all bytes before the comment. If the file at
+    `path` is not a checkpoint, it is not replaced, and SceneError is raised. May raise OSError.
     """
     with scratch_beside(path) as new:
         with new.open("r+b") as file:
@@ -89,10 +87,9 @@ def read_checkpoint(path: Path, header: bytes) -> Checkpoint | None:
 
 
 def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
-    """Return the checkpoint that was stored with a trajectory, or None.
-
-    `header` is the header of the trajectory. Raises SceneError for a checkpoint that cannot be used, because
-    it must not be replaced silently by less exact data.
+    """Return the checkpoint that was stored with a trajectory, or None. `header` is the header of the
+    trajectory. Raises SceneError for a checkpoint that cannot be used, because it must not be replaced
+    silently by less exact data.
 
     otherwise : words for the message that state what the user can do without the checkpoint.
     """
@@ -103,10 +100,8 @@ def kept_beside(path: Path, header: bytes, otherwise: str) -> Checkpoint | None:
 
 
 def _checkpoint(path: Path, header: bytes) -> Checkpoint | None:
-    """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable.
-
-    A checkpoint is unusable if it is damaged, or belongs to another run. A file of another kind is unusable,
-    too.
+    """Read a checkpoint like `read_checkpoint`, but raise SceneError if it is unusable. A checkpoint is
+    unusable if it is damaged, or belongs to another run. A file of another kind is unusable, too.
     """
     try:
         with open_regular(path) as file:
@@ -139,9 +134,8 @@ def _is_intact(file: BinaryIO) -> bool:
 
 
 def _checksum(file: BinaryIO, size: int | None = None) -> int:
-    """Compute the checksum of a file, or of its first `size` bytes.
-
-    The next read of the file starts after these bytes.
+    """Compute the checksum of a file, or of its first `size` bytes. The next read of the file starts after
+    these bytes.
     """
     remaining = file.seek(0, os.SEEK_END) if size is None else size
     file.seek(0)

@@ -11,6 +11,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -86,26 +87,12 @@ class Correlations:
 
     @property
     def first(self) -> int:
-        """Index of the first sample, in intervals from time 0.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100, start=2.0).first
-        20
-        """
+        """Index of the first sample, in intervals from time 0."""
         return round(self.start / self.interval)
 
     @property
     def tallies(self) -> tuple[OptionalTally, ...]:
-        """Optional tallies that the correlations need.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> [tally.name for tally in gp.Correlations(interval=0.1, lags=100, stress=True).tallies]
-        ['stress']
-        """
+        """Optional tallies that the correlations need."""
         return (StressTally(),) if self.stress else ()
 
     def to_json(self) -> str:
@@ -115,12 +102,6 @@ class Correlations:
         -------
         str
             JSON of the settings.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations(interval=0.1, lags=100).to_json()
-        '{"interval": 0.1, "lags": 100, "start": 0.0}'
         """
         return json.dumps({key: value for key, value in asdict(self).items() if value is not False})
 
@@ -144,12 +125,6 @@ class Correlations:
             If a value is invalid.
         TypeError, ValueError
             If the text does not describe correlations.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Correlations.from_json('{"interval": 0.1, "lags": 100}').lags
-        100
         """
         return cls(**json.loads(text))
 
@@ -186,10 +161,8 @@ def meaning_of(name: str) -> str:
 
 
 class _Correlator:
-    """Sums over all pairs of samples up to a largest lag.
-
-    The last axis of the array `earlier` contains the most recent samples, one for each lag. The last axis of
-    `sums` is the lag, too.
+    """Sums over all pairs of samples up to a largest lag. The last axis of the array `earlier` contains the
+    most recent samples, one for each lag. The last axis of `sums` is the lag, too.
     """
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
@@ -226,13 +199,12 @@ class _Correlator:
 
 
 class Correlator(_Correlator):
-    """Correlations of the motion of the particles.
-
-    Velocities and positions of all moving particles are used. Along axes with conserved momentum
-    (`Scene.conserved_axes`), they are relative to the centre of mass. If faces slide, their mean velocity is
-    subtracted. The subtraction of the motion of the centre of mass multiplies the mean square for a particle
-    of mass m by 1 - m / M, where M is the total mass. If masses differ, or if momentum is not conserved along
-    all axes, components are rescaled so that the factor is 1 - 1 / N for all N particles and all axes.
+    """Correlations of the motion of the particles. Velocities and positions of all moving particles are used.
+    Along axes with conserved momentum (`Scene.conserved_axes`), they are relative to the centre of mass. If
+    faces slide, their mean velocity is subtracted. The subtraction of the motion of the centre of mass
+    multiplies the mean square for a particle of mass m by 1 - m / M, where M is the total mass. If masses
+    differ, or if momentum is not conserved along all axes, components are rescaled so that the factor is 1 -
+    1 / N for all N particles and all axes.
     """
 
     def __init__(self, settings: Correlations, scene: Scene, masses: np.ndarray, displacements: bool) -> None:
@@ -263,9 +235,8 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) for moving particles only, relative to the centre of mass.
-
-        For M moving particles, the result has the shape (M d,).
+        """Return values (N, d) for moving particles only, relative to the centre of mass. For M moving
+        particles, the result has the shape (M d,).
         """
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
@@ -291,10 +262,9 @@ def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
 
 
 class StressCorrelator(_Correlator):
-    """Correlations of the stress tensor and the heat flux, after both are averaged over an interval.
-
-    The stress is averaged because impulses are instantaneous, while their mean over an interval is finite.
-    The first sample is not counted, because there is no interval before it.
+    """Correlations of the stress tensor and the heat flux, after both are averaged over an interval. The
+    stress is averaged because impulses are instantaneous, while their mean over an interval is finite. The
+    first sample is not counted, because there is no interval before it.
     """
 
     def __init__(self, settings: Correlations, dimension: int) -> None:
@@ -308,7 +278,6 @@ class StressCorrelator(_Correlator):
 
     @property
     def next(self) -> int:
-        """Index of the next sample, in intervals from time 0."""
         return super().next + self._begun
 
     def add(self, simulation: Simulation) -> None:
@@ -334,12 +303,10 @@ class StressCorrelator(_Correlator):
         return {"correlated_samples": float(self._samples), **named}
 
     def checkpoint(self) -> dict[str, Any]:
-        """Return arrays from which `restore` continues bitwise identically."""
         begun = {_PREFIX + "latest": self._latest, _PREFIX + "begun": np.array(self._begun)}
         return {**super().checkpoint(), **begun}
 
     def restore(self, arrays: dict[str, np.ndarray]) -> None:
-        """Continue from the checkpoint of a correlator with the same settings."""
         super().restore(arrays)
         self._latest, self._begun = arrays[_PREFIX + "latest"].copy(), bool(arrays[_PREFIX + "begun"])
 
@@ -351,3 +318,60 @@ def correlator_for(
     if settings.stress:
         return StressCorrelator(settings, simulation.scene.dimension)
     return Correlator(settings, simulation.scene, simulation.initial_state.masses, displacements)
+
+
+# Collisions of each pair of species, counted from recorded events.
+
+
+_NAME = "pair collisions"  # name of the array in a checkpoint
+
+
+def pairs_of(scene: Scene) -> list[tuple[int, int]]:
+    """Return the pairs of species by their indices, the lower index first. Raises SceneError for single
+    particles.
+    """
+    if scene.particles:
+        raise SceneError(
+            "particles", len(scene.particles), "excludes pairs, which are counted for species only"
+        )
+    return list(combinations_with_replacement(range(len(scene.species)), 2))
+
+
+def pair_names(scene: Scene) -> list[str]:
+    """Return the names of the pairs of species, such as "0-1"."""
+    return [f"{first}-{second}" for first, second in pairs_of(scene)]
+
+
+class PairCounter:
+    """Numbers of collisions of each pair of species since time 0, from recorded events.
+
+    counts : (pairs,), in the order of `pairs_of`.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        scene = simulation.scene
+        pairs, kinds = pairs_of(scene), len(scene.species)
+        self._number = np.zeros((kinds, kinds), dtype=np.int64)
+        for n, (first, second) in enumerate(pairs):
+            self._number[first, second] = self._number[second, first] = n
+        self._species = np.repeat(np.arange(kinds), [kind.count for kind in scene.species])
+        self.counts = np.zeros(len(pairs))
+        self._simulation = simulation
+        simulation.record_events = True
+
+    def take(self) -> None:
+        """Count the events since the last call, and discard them."""
+        particles = self._simulation.events["particles"]
+        # only pairs, without hits of faces and walls
+        species = self._species[particles[particles[:, 1] >= 0]]
+        numbers = self._number[species[:, 0], species[:, 1]]
+        self.counts += np.bincount(numbers, minlength=len(self.counts))
+        self._simulation.record_events = True  # start a new, empty list
+
+    def checkpoint(self) -> dict[str, np.ndarray]:
+        """Return arrays from which `restore` continues."""
+        return {_NAME: self.counts}
+
+    def restore(self, arrays: dict[str, np.ndarray]) -> None:
+        """Continue from a checkpoint."""
+        self.counts = arrays[_NAME].copy()

@@ -1,29 +1,35 @@
-"""Export of frames to the formats of other programs: GSD (HOOMD), extended XYZ and LAMMPS data.
-
-Positions and velocities come from the frames of the trajectory, in single precision. Touching particles may
-therefore overlap by 1e-7 of a diameter. Walls, faces and gravity are not part of these formats.
-"""
+"""States from a trajectory: its last one, and frames as files of other programs."""
 
 from __future__ import annotations
 
 import math
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, begins_with, output_path, writing
 from gaspart.keys.values import count_of
+from gaspart.scene.boundaries import refuse_open
+from gaspart.scene.faces import GRADIENT
+from gaspart.state.given import state_from_arrays
 from gaspart.state.insertion import per_particle
+from gaspart.state.state import State
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
-from gaspart.trajectory.opening import check_frames, open_netcdf_file, run_path
-from gaspart.trajectory.recipe import read_recipe
+from gaspart.trajectory.checkpoint import kept_beside
+from gaspart.trajectory.opening import check_frames, open_netcdf_file, open_verified, run_path
+from gaspart.trajectory.reading import open_trajectory
+from gaspart.trajectory.recipe import Recipe, read_recipe
+from gaspart.trajectory.run import simulation_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ALL = "all"
 """Keyword for all frames of a trajectory."""
@@ -116,9 +122,8 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return an iterator over one frame, or over all frames for `frame` = "all".
-
-    Errors for frames that cannot be exported are raised immediately.
+    """Return an iterator over one frame, or over all frames for `frame` = "all". Errors for frames that
+    cannot be exported are raised immediately.
     """
     recipe = read_recipe(path)
     recipe.require_all(path)
@@ -167,10 +172,9 @@ def _read(path: Path, numbers: range) -> Iterator[Snapshot]:
 
 
 def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write frames as a GSD file in HOOMD's schema.
-
-    The entry `log/time` contains the time of a frame. The entry `log/cell_origin` contains the lower corner
-    of the box in the scene's coordinates, which a piston may move. The step of a frame is its index.
+    """Write frames as a GSD file in HOOMD's schema. The entry `log/time` contains the time of a frame. The
+    entry `log/cell_origin` contains the lower corner of the box in the scene's coordinates, which a piston
+    may move. The step of a frame is its index.
     """
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with path.open("rb") as scratch, hoomd.open(descriptor_path(scratch), "w") as file:
@@ -179,9 +183,8 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a GSD frame, whose coordinates have their origin in the middle of the box.
-
-    For discs the thickness of the box is zero.
+    """Fill a GSD frame, whose coordinates have their origin in the middle of the box. For discs the thickness
+    of the box is zero.
     """
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
@@ -200,9 +203,8 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """Return the shape of each type; {} for a type with particles of different sizes.
-
-    The shapes are needed because other programs assume a diameter of 1 without them.
+    """Return the shape of each type; {} for a type with particles of different sizes. The shapes are needed
+    because other programs assume a diameter of 1 without them.
     """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
@@ -232,9 +234,8 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write a LAMMPS data file of atom_style sphere.
-
-    The density is the particle's mass divided by the volume of a ball of its diameter.
+    """Write a LAMMPS data file of atom_style sphere. The density is the particle's mass divided by the volume
+    of a ball of its diameter.
     """
     (snapshot,) = snapshots
     count = len(snapshot.positions)
@@ -263,3 +264,76 @@ def _rows(template: str, *columns: np.ndarray) -> Iterator[str]:
     for first in range(0, len(columns[0]), _ROWS):
         block = [column[first : first + _ROWS].tolist() for column in columns]
         yield template * len(block[0]) % tuple(chain.from_iterable(zip(*block, strict=True)))
+
+
+def last_state(path: str | Path) -> State:
+    """Return the state of all particles at the end of a trajectory.
+
+    The state is exact if the run was made with `keep_checkpoint`. Otherwise positions, velocities and spins
+    are from the last frame, in single precision, and a warning is issued. The motion of a piston and the
+    displacement of sheared images are exact.
+
+    Parameters
+    ----------
+    path : str or Path
+        The trajectory.
+
+    Returns
+    -------
+    State
+        The state. Another run can start from it.
+
+    Raises
+    ------
+    SceneError
+        If `open_trajectory` rejects the file, or if a stored checkpoint is damaged or belongs to another run.
+        Without a checkpoint, SceneError is also raised if the last frame does not contain all particles
+        (`follow`) or all properties (`keep`), or if a frame does not determine the state (in a scene with
+        sticky faces).
+
+    Examples
+    --------
+    >>> import gaspart as gp
+    >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
+    >>> path = gp.run(scene, seed=1, duration=2.0, sample_interval=0.1, path="gas.nc")
+    >>> gp.last_state(path).time
+    2.0
+    """
+    path = run_path(path)
+    recipe = read_recipe(path)
+    with open_verified(path) as (_, header, frames):
+        checkpoint = kept_beside(path, header, "to start from the last frame, in single precision")
+    if checkpoint and checkpoint.frames == frames:
+        simulation = simulation_of(recipe)
+        simulation.restore(checkpoint.arrays)
+        return simulation.state.copy()
+    refuse_open(recipe.scene, f"changes the particles, and {path} has no checkpoint of its end")
+    if recipe.stored_count < recipe.scene.count:
+        rule = f"has {recipe.stored_count} of {recipe.scene.count} particles, and no checkpoint"
+        raise SceneError("file", str(path), rule)
+    recipe.require_all(path)
+    with open_trajectory(path) as data:
+        if data.sizes["frame"] == 0:
+            raise SceneError("frame", 0, "the trajectory has no frame yet")
+        state = _of_frame(recipe, data.isel(frame=-1))
+    rule = "has no checkpoint of its end (keep_checkpoint): its last state is known in single precision only"
+    warnings.warn(f"gaspart: {path}: {rule}", stacklevel=2)
+    return state
+
+
+def _of_frame(recipe: Recipe, frame: xr.Dataset) -> State:
+    """Return the state from a frame that contains all particles."""
+    scene, time = recipe.scene, float(frame["time"])
+    positions, velocities = (frame[name].values.astype(float) for name in ("coordinates", "velocities"))
+    spins, vibrations = (
+        frame[name].values.astype(float) if name in frame else None for name in ("spins", "vibrations")
+    )
+    piston, displaced = None, None
+    if scene.has_piston:
+        piston = np.array([float(frame[f"piston_{name}"]) for name in ("position", "velocity")])
+    if scene.shear_rate is not None:
+        begun = recipe.initial.displaced if recipe.initial else None
+        displaced = (begun or 0.0) + scene.shear_rate * scene.container.lengths[GRADIENT] * time
+    return replace(
+        state_from_arrays(scene, positions, velocities, spins, piston, displaced, vibrations), time=time
+    )

@@ -35,9 +35,8 @@ _STORED = "native"  # folder in the cache with an empty file for each compiled s
 
 
 def pays(seconds: float, features: dict[str, bool]) -> bool:
-    """Return True if native kernels save more time than their compilation costs.
-
-    `seconds` is the CPU time of a run.
+    """Return True if native kernels save more time than their compilation costs. `seconds` is the CPU time of
+    a run.
 
     features : True or False for features of the processor, by LLVM name.
     """
@@ -115,9 +114,8 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:
-    """Compile kernels for this processor in a separate process, and return their number.
-
-    Kernels that are in the cache are not compiled again.
+    """Compile kernels for this processor in a separate process, and return their number. Kernels that are in
+    the cache are not compiled again.
     """
     cache.FOLDER = Path(os.devnull)  # this process must not load kernels of the package
     for module, name, types in kernels:

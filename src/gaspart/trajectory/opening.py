@@ -24,10 +24,7 @@ PARTIAL = ".partial"
 
 
 def partial_path(path: Path) -> Path:
-    """Return the path of a trajectory during the run.
-
-    Raises SceneError for a path without a name.
-    """
+    """Return the path of a trajectory during the run. Raises SceneError for a path without a name."""
     if not path.name:
         raise SceneError("path", str(path), "must be the name of a file")
     return path.with_name(path.name + PARTIAL)
@@ -61,11 +58,10 @@ def writing(path: Path) -> Iterator[None]:
 
 @contextmanager
 def open_locked(partial: Path) -> Iterator[BinaryIO]:
-    """Open the partial file for unbuffered reading and writing, and lock it.
-
-    The lock lasts to the end of the block, even if the file is closed earlier, for example before it is
-    renamed. Raises SceneError for a file that gaspart did not write, and for a link. SceneError is also
-    raised for a file with a second name (hard link), because changes would appear under the second name, too.
+    """Open the partial file for unbuffered reading and writing, and lock it. The lock lasts to the end of the
+    block, even if the file is closed earlier, for example before it is renamed. Raises SceneError for a file
+    that gaspart did not write, and for a link. SceneError is also raised for a file with a second name (hard
+    link), because changes would appear under the second name, too.
     """
     with suppress(FileNotFoundError):  # another process has just finished it
         may_replace(partial, UNFINISHED, overwrite=True)
@@ -86,9 +82,8 @@ def open_locked(partial: Path) -> Iterator[BinaryIO]:
 
 @contextmanager
 def _alone(partial: Path) -> Iterator[None]:
-    """Hold the lock of a partial file during the `with` block.
-
-    Raises SceneError if another process has locked it.
+    """Hold the lock of a partial file during the `with` block. Raises SceneError if another process has
+    locked it.
     """
     try:
         with only_process(partial):
@@ -103,9 +98,8 @@ def _open_or_create(path: str, flags: int) -> int:
 
 
 def replica_path(path: Path, number: int) -> Path:
-    """Return the file of a replica of the run at a path.
-
-    The replicas of `run.nc` are `run-1.nc`, `run-2.nc` ...
+    """Return the file of a replica of the run at a path. The replicas of `run.nc` are `run-1.nc`, `run-2.nc`
+    ...
     """
     return path.with_name(f"{path.stem}-{number}{path.suffix}")
 
@@ -114,9 +108,8 @@ def replica_path(path: Path, number: int) -> Path:
 
 
 def run_path(value: object) -> Path:
-    """Return an argument of a user as the path of a trajectory.
-
-    Raises SceneError if the argument is not a path.
+    """Return an argument of a user as the path of a trajectory. Raises SceneError if the argument is not a
+    path.
     """
     if isinstance(value, str | os.PathLike):
         return Path(value)
@@ -133,10 +126,9 @@ def not_a_trajectory(value: object) -> SceneError:
 
 @contextmanager
 def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
-    """Open a trajectory; return the file, its header and its number of frames.
-
-    Header and number of frames are compared with the size of the file. Raises SceneError for a file of
-    another kind, a truncated file, or a damaged header.
+    """Open a trajectory; return the file, its header and its number of frames. Header and number of frames
+    are compared with the size of the file. Raises SceneError for a file of another kind, a truncated file, or
+    a damaged header.
     """
     try:
         with open_regular(path) as file:
@@ -168,17 +160,15 @@ def open_verified(path: Path) -> Iterator[tuple[BinaryIO, bytes, int]]:
 
 
 def open_netcdf(path: Path) -> netCDF4.Dataset:
-    """Open a trajectory of gaspart as a netCDF4.Dataset; the caller must close it.
-
-    Raises SceneError for a file of another kind, a truncated file, or a damaged header.
+    """Open a trajectory of gaspart as a netCDF4.Dataset; the caller must close it. Raises SceneError for a
+    file of another kind, a truncated file, or a damaged header.
     """
     return open_checked(path)[0]
 
 
 def open_checked(path: Path) -> tuple[netCDF4.Dataset, CheckedFrames]:
-    """Open a trajectory like `open_netcdf`; also return the record of its checked frames.
-
-    The caller must close the Dataset and the record.
+    """Open a trajectory like `open_netcdf`; also return the record of its checked frames. The caller must
+    close the Dataset and the record.
     """
     with open_verified(path) as (file, header, frames):
         return open_descriptor(file), CheckedFrames(file, header, frames)
@@ -199,10 +189,7 @@ def open_netcdf_file(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 def check_frames(path: Path, numbers: range | None = None) -> None:
-    """Verify the checksums of some or all frames of a trajectory.
-
-    Raises SceneError if a frame is damaged.
-    """
+    """Verify the checksums of some or all frames of a trajectory. Raises SceneError if a frame is damaged."""
     with open_verified(path) as (file, header, frames):
         selection = range(frames) if numbers is None else range(numbers.start, min(numbers.stop, frames))
         damaged = damaged_frame(file.fileno(), header, selection)

@@ -11,9 +11,8 @@ import numpy as np
 from gaspart.errors import SceneError
 from gaspart.state.tally import ENERGY, Tally
 from gaspart.trajectory import amber
-from gaspart.trajectory.correlator import stress_units
+from gaspart.trajectory.correlator import pair_names, stress_units
 from gaspart.trajectory.opening import open_checked, run_path
-from gaspart.trajectory.pairs import pair_names
 from gaspart.trajectory.recipe import Recipe, stored_recipe
 
 if TYPE_CHECKING:
@@ -48,6 +47,16 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
 
     Values are read on demand. Close the Dataset, or use it in a `with` statement.
 
+    Attributes contain the scene (YAML), the engine and the seed (JSON), and properties of the scene:
+    dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
+    given_start is 1 if the run starts from a state that the user supplied.
+
+    With open faces, the dimension atom counts particle numbers. If no particle in the container has a number
+    in a frame, its coordinates and velocities are NaN.
+
+    When a file is opened, only the times of its frames are read. The checksum of a frame is for all of its
+    variables together, so that all of them are read before one of them is used.
+
     Parameters
     ----------
     path : str or Path
@@ -66,18 +75,6 @@ def open_trajectory(path: str | Path) -> xr.Dataset:
     SceneError
         If the file is unreadable, truncated, damaged in its header, or not written by gaspart. SceneError is
         also raised when a damaged frame is read for the first time.
-
-    Notes
-    -----
-    Attributes contain the scene (YAML), the engine and the seed (JSON), and properties of the scene:
-    dimension and, unless faces are open, count, packing_fraction and number_density. The attribute
-    given_start is 1 if the run starts from a state that the user supplied.
-
-    With open faces, the dimension atom counts particle numbers. If no particle in the container has a number
-    in a frame, its coordinates and velocities are NaN.
-
-    When a file is opened, only the times of its frames are read. The checksum of a frame is for all of its
-    variables together, so that all of them are read before one of them is used.
 
     Examples
     --------

@@ -13,20 +13,17 @@ from gaspart.engines import Engine, engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.files import open_regular
 from gaspart.keys.values import number
-from gaspart.scene.face_checks import check_piston_end
+from gaspart.scene.boundaries import check_piston_end, refuse_sheared
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import refuse_sheared
 from gaspart.state.given import state_at_time_zero, state_from_arrays
 from gaspart.state.insertion import per_particle
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.random import stream
 from gaspart.state.state import State
 from gaspart.trajectory import amber, provenance
-from gaspart.trajectory.correlator import Correlations, sum_names
+from gaspart.trajectory.correlator import Correlations, pair_names, pairs_of, sum_names
 from gaspart.trajectory.opening import open_netcdf_file
-from gaspart.trajectory.pairs import pair_names, pairs_of
-from gaspart.trajectory.run_options import Contents, scene_tallies, stored_contents, tally_axes
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Contents, Until, scene_tallies, stored_contents, tally_axes
 from gaspart.yaml_text import dump_yaml, parse_yaml
 
 if TYPE_CHECKING:
@@ -38,9 +35,8 @@ ROUNDING = 1e-9
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
-    """Return the ratio of `value` to `unit`, which must be a positive integer.
-
-    Rounding errors are tolerated. Raises SceneError for any other ratio.
+    """Return the ratio of `value` to `unit`, which must be a positive integer. Rounding errors are tolerated.
+    Raises SceneError for any other ratio.
     """
     ratio = round(value / unit) if value / unit < 2**53 else 0
     if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
@@ -50,9 +46,8 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 @dataclass(frozen=True)
 class Recipe(Contents):
-    """Everything that determines a trajectory; invalid settings raise SceneError.
-
-    A recipe contains the scene, the engine, the seed, the length of the run, and the `Contents` of its file.
+    """Everything that determines a trajectory; invalid settings raise SceneError. A recipe contains the
+    scene, the engine, the seed, the length of the run, and the `Contents` of its file.
     """
 
     scene: Scene
@@ -122,9 +117,8 @@ class Recipe(Contents):
 
     @property
     def frames(self) -> int:
-        """Number of frames of the complete trajectory, including the frame at time 0.
-
-        For a run that ends at an accuracy, this is the maximum number.
+        """Number of frames of the complete trajectory, including the frame at time 0. For a run that ends at
+        an accuracy, this is the maximum number.
         """
         if self.until:
             return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
@@ -184,7 +178,6 @@ class Recipe(Contents):
             raise SceneError("keep", self.keep, f"{path} holds nothing else of its particles")
 
     def attributes(self) -> dict[str, Any]:
-        """Return the recipe as attributes of the file, from which `read_recipe` restores it."""
         seed = [int(part) for part in self.seed] if isinstance(self.seed, (tuple, list)) else int(self.seed)
         return {
             "scene": dump_yaml(self.scene.to_dict()),
@@ -251,19 +244,14 @@ def _is_numbered(seed: int | tuple[int, ...], replica: int, replicas: int) -> bo
 
 
 def read_recipe(path: str | Path) -> Recipe:
-    """Read the recipe of a finished or unfinished trajectory.
-
-    Raises SceneError if it has no recipe.
-    """
+    """Read the recipe of a finished or unfinished trajectory. Raises SceneError if it has no recipe."""
     path = Path(path)
     with open_netcdf_file(path) as file:
         return stored_recipe(file, path)
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """Return the recipe of an open trajectory.
-
-    Raises SceneError if it has no recipe.
+    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
 
     path : path of the trajectory, for messages
     """

@@ -18,10 +18,9 @@ from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
 from gaspart.trajectory.amber import Frames
 from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
-from gaspart.trajectory.correlator import correlator_for
-from gaspart.trajectory.pairs import PairCounter
+from gaspart.trajectory.correlator import PairCounter, correlator_for
 from gaspart.trajectory.recipe import Recipe, multiple
-from gaspart.trajectory.until import examined_before, examined_from, is_examined
+from gaspart.trajectory.run_options import examined_before, examined_from, is_examined
 
 Progress = Callable[[float, float, int], None]
 """Callback whose arguments are the present time, the duration, and the number of collisions so far.
@@ -41,9 +40,8 @@ _LOOK = 0.05  # seconds between checks of other replicas
 
 
 class Recording:
-    """Simulation in progress, file of its frames, and path of the finished trajectory.
-
-    The trajectory does not depend, even in its last bit, on checkpoints or on the division into segments.
+    """Simulation in progress, file of its frames, and path of the finished trajectory. The trajectory does
+    not depend, even in its last bit, on checkpoints or on the division into segments.
 
     every : time between checkpoints, in seconds
     examine : function that tests the accuracy, for a run that ends at an accuracy
@@ -81,11 +79,9 @@ class Recording:
             self._note()
 
     def finish(self, keep: bool = False) -> None:
-        """Write all missing frames, and finally a checkpoint if `keep` is True.
-
-        May raise OSError. Raises SimulationError if an invariant is violated; the state is then stored in a
-        file `.failed.npz` next to the trajectory. A signal to the process takes effect after a checkpoint has
-        been written.
+        """Write all missing frames, and finally a checkpoint if `keep` is True. May raise OSError. Raises
+        SimulationError if an invariant is violated; the state is then stored in a file `.failed.npz` next to
+        the trajectory. A signal to the process takes effect after a checkpoint has been written.
         """
         try:
             with defer_signals() as signals:
@@ -100,9 +96,8 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Store the state of a failed run, unless another file has the name for this state.
-
-        Returns the message about the stored state.
+        """Store the state of a failed run, unless another file has the name for this state. Returns the
+        message about the stored state.
         """
         failed = self._path.with_name(self._path.name + ".failed.npz")
         try:
@@ -112,10 +107,8 @@ class Recording:
         return f"its state is kept in {failed}"
 
     def _is_complete(self, signals: Deferral) -> bool:
-        """Return True if the file has all frames; wait for other replicas.
-
-        The result depends on the frames only. Therefore a run ends at the same frame even if it was
-        interrupted.
+        """Return True if the file has all frames; wait for other replicas. The result depends on the frames
+        only. Therefore a run ends at the same frame even if it was interrupted.
         """
         count = self._frames.count
         if count >= self._recipe.frames:
@@ -129,9 +122,8 @@ class Recording:
         return excess <= 1.0
 
     def _estimate(self, frames: int, excess: float) -> float:
-        """Return the time at which a run is expected to reach its accuracy.
-
-        Errors decrease as 1 / sqrt(time). Accuracies are tested only at certain frames.
+        """Return the time at which a run is expected to reach its accuracy. Errors decrease as 1 /
+        sqrt(time). Accuracies are tested only at certain frames.
 
         excess : present error divided by the required error.
         """
@@ -140,9 +132,8 @@ class Recording:
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:
-        """Estimate the duration of a continued run for progress reports.
-
-        The estimate does not affect the trajectory.
+        """Estimate the duration of a continued run for progress reports. The estimate does not affect the
+        trajectory.
         """
         before = examined_before(self._frames.count)
         if self._progress and self._examine and before is not None:
@@ -221,9 +212,8 @@ class Recording:
             self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
-        """Advance by a segment towards the time `goal`, and adapt the length of segments.
-
-        The next segment should take about `_SEGMENT` seconds.
+        """Advance by a segment towards the time `goal`, and adapt the length of segments. The next segment
+        should take about `_SEGMENT` seconds.
         """
         begun = time.monotonic()
         self._simulation.advance(**limits)

@@ -1,9 +1,12 @@
-"""Writing of trajectories during runs, and continuation of runs.
+"""Runs that write a trajectory: begin, resume and extend.
 
 A run writes `path.partial`, and regularly the checkpoint `path.checkpoint.npz`, from which it can continue
 bitwise identically. When the run is complete, the file is renamed to `path`. The content of the file does not
 depend on the time or the machine of the run. The last checkpoint can be stored with the file. It contains the
-final state, from which a longer run can continue (`extend`).
+final state, from which a longer run can continue.
+
+`record`, `resume` and `extend` determine the recipe of the file. The rest is the same for them: find out from
+the files what is missing (`is_finished`), take what a checkpoint or a shorter run has, and write the rest.
 """
 
 from __future__ import annotations
@@ -47,79 +50,10 @@ from gaspart.trajectory.opening import (
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
 from gaspart.trajectory.recording import Examine, Progress, Recording
 from gaspart.trajectory.replicas import beside, find_replicas, opened_together
-from gaspart.trajectory.until import Until, is_examined
+from gaspart.trajectory.run_options import Until, is_examined
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-# Extension of a finished run: the same recipe with a longer duration. The frames of the shorter run are the
-# first frames of the longer run. If the checkpoint of the shorter run was stored, the longer run continues
-# from this final state. The frames get the header of the longer run, because its duration is part of the
-# header, and the checksums of all frames depend on it. The shorter file is not changed until the longer run
-# is complete, so that an interruption at any moment loses neither.
-
-
-def longer(path: Path, duration: float) -> Recipe:
-    """Return the recipe of a trajectory with a longer duration.
-
-    Raises SceneError if the file is not an undamaged trajectory of this version of the program. Raises
-    SceneError also if the duration is not longer, or if the recipe rejects it.
-    """
-    recipe = read_recipe(path)
-    if not begun_as(path, recipe):
-        rule = "was made by another version of gaspart, Python or a package: it could go on otherwise"
-        raise SceneError("path", str(path), rule)
-    check_frames(path)
-    with open_verified(path) as (_, _, frames):
-        reached = (frames - 1) * recipe.sample_interval
-    rule = f"must be longer than the {reached:g} that {path.name} has"
-    duration = number("duration", duration, rule, above=reached)
-    extended = replace(recipe, duration=duration, until=None)
-    if extended.frames <= frames:  # longer only by a rounding error
-        raise SceneError("duration", duration, rule)
-    return extended
-
-
-def is_beginning(path: Path, recipe: Recipe) -> bool:
-    """Return True if the file at `path` is the beginning of a requested run.
-
-    In this case the two runs differ only in their duration, and the requested duration is longer.
-    """
-    try:
-        stored, revision = read_recipe(path), stored_revision(path)
-        with open_verified(path) as (_, _, frames):
-            shorter = frames < recipe.frames
-        same = replace(stored, duration=recipe.duration, until=recipe.until)
-    except SceneError:  # for example, a duration that is no multiple of its interval
-        return False
-    return shorter and begun_as(path, stored) and same.header(revision) == recipe.header(revision)
-
-
-def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
-    """Copy the frames and the final state of a shorter run to a longer run.
-
-    The shorter run is at `path`. The frames of the longer run are written to `frames`. If there is no shorter
-    run, or if its final state was not stored, the function returns None and changes nothing. The checkpoint
-    of the shorter run is replaced last, so that the copy can be repeated if it is interrupted. Raises
-    OSError, and SceneError for a damaged file.
-    """
-    if not (path.exists() and is_beginning(path, recipe)):
-        return None
-    with open_verified(path) as (source, header, count):
-        kept = read_checkpoint(checkpoint_path(path), header)
-        if kept is None or kept.frames != count:
-            return None
-        check_frames(path)
-        for frame in frames_of(source, header, count):
-            frames.append_bytes(frame)
-    frames.sync()
-    write_checkpoint(checkpoint_path(path), frames.header, count, kept.arrays)
-    return Checkpoint(count, kept.arrays)
-
-
-# State of a run, from the files at its path, and the action that follows.
-
 
 Examiner: TypeAlias = "Callable[[Sequence[xr.Dataset], Until, int], float]"
 """Function that computes the errors in the first frames of a run, or of all its replicas.
@@ -130,151 +64,10 @@ unknown, and 0 if the run must end.
 _LOOK = 0.05  # seconds between checks of other replicas
 
 
-class Content(Enum):
-    """Relation of an existing file to the requested run."""
-
-    NOTHING = "there is no file, or an empty one"
-    BEGUN = "this run, unfinished"
-    COMPLETE = "this run, complete and undamaged"
-    SHORTER = "this run, complete with a shorter duration"
-    OTHER = "another run or version, or damaged data"
-
-
-class Action(Enum):
-    """Next step of a run."""
-
-    NONE = "the run is finished"
-    WRITE = "begin or continue in the partial file"
-    REPLACE = "begin, and replace a file: only with overwrite"
-
-
-_ACTIONS: dict[Content, Action | dict[Content, Action]] = {
-    Content.NOTHING: {
-        Content.NOTHING: Action.WRITE,
-        Content.BEGUN: Action.WRITE,
-        Content.OTHER: Action.REPLACE,
-    },
-    Content.SHORTER: {
-        Content.NOTHING: Action.REPLACE,
-        Content.BEGUN: Action.WRITE,  # the run is being extended
-        Content.OTHER: Action.REPLACE,
-    },
-    Content.COMPLETE: Action.NONE,
-    Content.OTHER: Action.REPLACE,
-}
-"""Action for each content of the file at the path, and if necessary of the partial file."""
-
-
-def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
-    """Return True if a run is complete at `path`.
-
-    Raises SceneError if the run must not be begun or continued.
-    """
-    partial, content = partial_path(path), _content(path, recipe, examiner)
-    action = _ACTIONS[content]
-    if isinstance(action, dict):
-        action = action[_partial_content(partial, recipe)]
-    if action is Action.REPLACE and not overwrite:
-        there = partial if content is Content.NOTHING else path
-        rule = f"exists{_difference(there, recipe, content)}; move it away, or {OVERWRITE}"
-        raise SceneError("path", str(there), rule)
-    return action is Action.NONE
-
-
-def _difference(path: Path, recipe: Recipe, content: Content) -> str:
-    """Describe the difference between the file of a run and the requested run."""
-    try:
-        stored = read_recipe(path)
-    except SceneError:
-        return " and is damaged"
-    if content is Content.SHORTER and stored.until is None and recipe.until is None:
-        return f", with a shorter duration; continue it: gaspart resume {path} --duration {recipe.duration:g}"
-    keys = [item.name for item in fields(Recipe) if item.compare]
-    changed = [key for key in keys if getattr(stored, key) != getattr(recipe, key)]
-    texts = [
-        f"{key} {short_repr(getattr(stored, key))}, not {short_repr(getattr(recipe, key))}"
-        if isinstance(getattr(recipe, key), int | float | str | tuple)
-        else key
-        for key in changed
-    ]
-    if not changed:
-        return ", of another version of gaspart or with another initial state, or is damaged"
-    return f", of another run, which differs in {'; '.join(texts)}"
-
-
-def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
-    """Return the content of the file at the path of a run.
-
-    Raises SceneError for a file of another kind.
-    """
-    if not may_replace(path, TRAJECTORY, overwrite=True):
-        return Content.NOTHING
-    if begun_as(path, recipe):
-        with suppress(SceneError), open_regular(path) as file:
-            check_frames(path)
-            if is_complete(recipe, path, frame_count(file), examiner):
-                return Content.COMPLETE
-    return Content.SHORTER if is_beginning(path, recipe) else Content.OTHER
-
-
-def _partial_content(partial: Path, recipe: Recipe) -> Content:
-    """Return the content of the partial file of a run.
-
-    Raises SceneError for a file of another kind.
-    """
-    with suppress(FileNotFoundError):  # another process has just finished it
-        if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
-            if begun_as(partial, recipe):
-                return Content.BEGUN
-            return Content.OTHER if partial.exists() else Content.NOTHING
-    return Content.NOTHING
-
-
-def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Return True if a trajectory is complete with this number of frames; wait for replicas.
-
-    The accuracy can be tested only when the other replicas have these frames, too.
-    """
-    examine = examination(recipe, path, examiner)
-    if frames == recipe.frames or examine is None or not is_examined(frames):
-        return frames == recipe.frames
-    while (excess := examine(frames)) is None:
-        time.sleep(_LOOK)
-    return excess <= 1.0
-
-
-def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """Return the function that tests the accuracy in the first frames of a run.
-
-    For a run without required accuracies, None is returned. All replicas of a run are tested together.
-    """
-    until = recipe.until
-    if until is None:
-        return None
-    if examiner is None:
-        raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
-    files = beside(path, recipe)
-
-    def examine(frames: int) -> float | None:
-        paths = find_replicas(files, frames)
-        if paths is None:
-            return None
-        try:
-            with opened_together(paths) as runs:
-                return examiner(runs, until, frames)
-        except SceneError:
-            if find_replicas(files, frames) == paths:
-                raise
-            return None  # another process has just renamed the file, or truncated it to its checkpoint
-
-    return examine
-
-
 @dataclass(frozen=True)
 class WriteOptions:
-    """Options for writing a trajectory; its content does not depend on them.
-
-    A negative time raises SceneError.
+    """Options for writing a trajectory; its content does not depend on them. A negative time raises
+    SceneError.
     """
 
     checkpoint_seconds: float = 30.0
@@ -288,9 +81,8 @@ class WriteOptions:
 
 
 def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
-    """Write the trajectory of a recipe at `path`, and return `path`.
-
-    The exceptions are the same as in `gaspart.run`.
+    """Write the trajectory of a recipe at `path`, and return `path`. The exceptions are the same as in
+    `gaspart.run`.
     """
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` recognises the format by this suffix
@@ -299,10 +91,9 @@ def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
 
 
 def resume(path: str | Path, options: WriteOptions) -> Path:
-    """Finish the interrupted run of `path.partial` from its files, and return `path`.
-
-    Raises SceneError if there is nothing to resume, if another version of the program began the run, or if
-    the file at `path` is not a complete trajectory of gaspart.
+    """Finish the interrupted run of `path.partial` from its files, and return `path`. Raises SceneError if
+    there is nothing to resume, if another version of the program began the run, or if the file at `path` is
+    not a complete trajectory of gaspart.
     """
     path = run_path(path)
     partial = partial_path(path)
@@ -326,10 +117,7 @@ def resume(path: str | Path, options: WriteOptions) -> Path:
 
 
 def begun(partial: Path) -> Recipe:
-    """Return the recipe of an unfinished trajectory.
-
-    Raises SceneError if another version began it.
-    """
+    """Return the recipe of an unfinished trajectory. Raises SceneError if another version began it."""
     recipe = read_recipe(partial)
     if not begun_as(partial, recipe):
         rule = "was begun by another version of gaspart, Python or a package: start it anew"
@@ -338,13 +126,12 @@ def begun(partial: Path) -> Recipe:
 
 
 def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
-    """Continue the complete run at `path` to a longer duration, and return `path`.
-
-    The resulting file has the bytes of an uninterrupted run of the longer duration. The run continues from
-    its final checkpoint, which `keep_checkpoint` stores. Without this checkpoint the run is repeated from its
-    start. If the run has a checkpoint, the extended run has a checkpoint, too. An interrupted extension is
-    continued by this function or by `resume`. Raises SceneError under the same conditions as `longer`, and if
-    another unfinished run is at the path, or if the checkpoint is damaged or belongs to another run.
+    """Continue the complete run at `path` to a longer duration, and return `path`. The resulting file has the
+    bytes of an uninterrupted run of the longer duration. The run continues from its final checkpoint, which
+    `keep_checkpoint` stores. Without this checkpoint the run is repeated from its start. If the run has a
+    checkpoint, the extended run has a checkpoint, too. An interrupted extension is continued by this function
+    or by `resume`. Raises SceneError under the same conditions as `longer`, and if another unfinished run is
+    at the path, or if the checkpoint is damaged or belongs to another run.
     """
     path = Path(path)
     partial, checkpoint = partial_path(path), checkpoint_path(path)
@@ -368,9 +155,7 @@ def extend(path: str | Path, duration: float, options: WriteOptions) -> Path:
     return _carry_out(recipe, path, replace(options, keep_checkpoint=kept))
 
 
-def simulation_of(recipe: Recipe) -> Simulation:
-    """Return the simulation of a recipe at time 0."""
-    return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
+# The work, which is the same for all three.
 
 
 def _carry_out(recipe: Recipe, path: Path, options: WriteOptions) -> Path:
@@ -403,21 +188,6 @@ def _finish(recipe: Recipe, path: Path, options: WriteOptions) -> None:
                     remove_checkpoint(checkpoint)
 
 
-def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Return True if the first `frames` frames of a file are undamaged.
-
-    If a frame is damaged, the function raises SceneError, unless `overwrite` is True.
-    """
-    try:
-        check_frames(partial, range(frames))
-    except SceneError as error:
-        if overwrite:
-            return False
-        rule = f"{error.rule}; {OVERWRITE} to start again"
-        raise SceneError("path", str(partial), rule) from None
-    return True
-
-
 def _record(
     recipe: Recipe,
     simulation: Simulation,
@@ -443,3 +213,197 @@ def _record(
     if checkpoint:
         recording.restore(checkpoint.arrays)
     recording.finish(options.keep_checkpoint)
+
+
+def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
+    """Return True if the first `frames` frames of a file are undamaged. If a frame is damaged, the function
+    raises SceneError, unless `overwrite` is True.
+    """
+    try:
+        check_frames(partial, range(frames))
+    except SceneError as error:
+        if overwrite:
+            return False
+        rule = f"{error.rule}; {OVERWRITE} to start again"
+        raise SceneError("path", str(partial), rule) from None
+    return True
+
+
+def simulation_of(recipe: Recipe) -> Simulation:
+    """Return the simulation of a recipe at time 0."""
+    return Simulation(recipe.scene, recipe.engine, recipe.seed, initial=recipe.initial, tallies=recipe.asked)
+
+
+# What the files at the path of a run are.
+
+
+class Content(Enum):
+    """Relation of an existing file to the requested run."""
+
+    NOTHING = "there is no file, or an empty one"
+    BEGUN = "this run, unfinished"
+    COMPLETE = "this run, complete and undamaged"
+    SHORTER = "this run, complete with a shorter duration"
+    OTHER = "another run or version, or damaged data"
+
+
+def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
+    """Return True if a run is complete at `path`; False if it may be begun, continued or extended there.
+    Raises SceneError if this would replace a file, unless `overwrite` is True.
+    """
+    partial, content = partial_path(path), _content(path, recipe, examiner)
+    if content is Content.COMPLETE:
+        return True
+    unfinished = Content.OTHER if content is Content.OTHER else _partial_content(partial, recipe)
+    is_begun = unfinished is Content.BEGUN  # beside a shorter run: its extension
+    if overwrite or is_begun or content is unfinished is Content.NOTHING:
+        return False
+    there = partial if content is Content.NOTHING else path
+    rule = f"exists{_difference(there, recipe, content)}; move it away, or {OVERWRITE}"
+    raise SceneError("path", str(there), rule)
+
+
+def _content(path: Path, recipe: Recipe, examiner: Examiner | None) -> Content:
+    """Return the content of the file at the path of a run. Raises SceneError for a file of another kind."""
+    if not may_replace(path, TRAJECTORY, overwrite=True):
+        return Content.NOTHING
+    if begun_as(path, recipe):
+        with suppress(SceneError), open_regular(path) as file:
+            check_frames(path)
+            if is_complete(recipe, path, frame_count(file), examiner):
+                return Content.COMPLETE
+    return Content.SHORTER if is_beginning(path, recipe) else Content.OTHER
+
+
+def _partial_content(partial: Path, recipe: Recipe) -> Content:
+    """Return the content of the partial file of a run. Raises SceneError for a file of another kind."""
+    with suppress(FileNotFoundError):  # another process has just finished it
+        if may_replace(partial, UNFINISHED, overwrite=True) and not is_blank(partial):
+            if begun_as(partial, recipe):
+                return Content.BEGUN
+            return Content.OTHER if partial.exists() else Content.NOTHING
+    return Content.NOTHING
+
+
+def _difference(path: Path, recipe: Recipe, content: Content) -> str:
+    """Describe the difference between the file of a run and the requested run."""
+    try:
+        stored = read_recipe(path)
+    except SceneError:
+        return " and is damaged"
+    if content is Content.SHORTER and stored.until is None and recipe.until is None:
+        return f", with a shorter duration; continue it: gaspart resume {path} --duration {recipe.duration:g}"
+    keys = [item.name for item in fields(Recipe) if item.compare]
+    changed = [key for key in keys if getattr(stored, key) != getattr(recipe, key)]
+    texts = [
+        f"{key} {short_repr(getattr(stored, key))}, not {short_repr(getattr(recipe, key))}"
+        if isinstance(getattr(recipe, key), int | float | str | tuple)
+        else key
+        for key in changed
+    ]
+    if not changed:
+        return ", of another version of gaspart or with another initial state, or is damaged"
+    return f", of another run, which differs in {'; '.join(texts)}"
+
+
+# End of a run: all frames are there, or its accuracy is reached.
+
+
+def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
+    """Return True if a trajectory is complete with this number of frames; wait for replicas. The accuracy can
+    be tested only when the other replicas have these frames, too.
+    """
+    examine = examination(recipe, path, examiner)
+    if frames == recipe.frames or examine is None or not is_examined(frames):
+        return frames == recipe.frames
+    while (excess := examine(frames)) is None:
+        time.sleep(_LOOK)
+    return excess <= 1.0
+
+
+def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
+    """Return the function that tests the accuracy in the first frames of a run. For a run without required
+    accuracies, None is returned. All replicas of a run are tested together.
+    """
+    until = recipe.until
+    if until is None:
+        return None
+    if examiner is None:
+        raise ValueError("examiner: None (a run that ends when it is accurate needs one)")
+    files = beside(path, recipe)
+
+    def examine(frames: int) -> float | None:
+        paths = find_replicas(files, frames)
+        if paths is None:
+            return None
+        try:
+            with opened_together(paths) as runs:
+                return examiner(runs, until, frames)
+        except SceneError:
+            if find_replicas(files, frames) == paths:
+                raise
+            return None  # another process has just renamed the file, or truncated it to its checkpoint
+
+    return examine
+
+
+# Extension of a finished run: the same recipe with a longer duration. The frames of the shorter run are the
+# first frames of the longer run. If the checkpoint of the shorter run was stored, the longer run continues
+# from this final state. The frames get the header of the longer run, because its duration is part of the
+# header, and the checksums of all frames depend on it. The shorter file is not changed until the longer run
+# is complete, so that an interruption at any moment loses neither.
+
+
+def longer(path: Path, duration: float) -> Recipe:
+    """Return the recipe of a trajectory with a longer duration. Raises SceneError if the file is not an
+    undamaged trajectory of this version of the program. Raises SceneError also if the duration is not longer,
+    or if the recipe rejects it.
+    """
+    recipe = read_recipe(path)
+    if not begun_as(path, recipe):
+        rule = "was made by another version of gaspart, Python or a package: it could go on otherwise"
+        raise SceneError("path", str(path), rule)
+    check_frames(path)
+    with open_verified(path) as (_, _, frames):
+        reached = (frames - 1) * recipe.sample_interval
+    rule = f"must be longer than the {reached:g} that {path.name} has"
+    duration = number("duration", duration, rule, above=reached)
+    extended = replace(recipe, duration=duration, until=None)
+    if extended.frames <= frames:  # longer only by a rounding error
+        raise SceneError("duration", duration, rule)
+    return extended
+
+
+def is_beginning(path: Path, recipe: Recipe) -> bool:
+    """Return True if the file at `path` is the beginning of a requested run. In this case the two runs differ
+    only in their duration, and the requested duration is longer.
+    """
+    try:
+        stored, revision = read_recipe(path), stored_revision(path)
+        with open_verified(path) as (_, _, frames):
+            shorter = frames < recipe.frames
+        same = replace(stored, duration=recipe.duration, until=recipe.until)
+    except SceneError:  # for example, a duration that is no multiple of its interval
+        return False
+    return shorter and begun_as(path, stored) and same.header(revision) == recipe.header(revision)
+
+
+def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
+    """Copy the frames and the final state of a shorter run to a longer run. The shorter run is at `path`. The
+    frames of the longer run are written to `frames`. If there is no shorter run, or if its final state was
+    not stored, the function returns None and changes nothing. The checkpoint of the shorter run is replaced
+    last, so that the copy can be repeated if it is interrupted. Raises OSError, and SceneError for a damaged
+    file.
+    """
+    if not (path.exists() and is_beginning(path, recipe)):
+        return None
+    with open_verified(path) as (source, header, count):
+        kept = read_checkpoint(checkpoint_path(path), header)
+        if kept is None or kept.frames != count:
+            return None
+        check_frames(path)
+        for frame in frames_of(source, header, count):
+            frames.append_bytes(frame)
+    frames.sync()
+    write_checkpoint(checkpoint_path(path), frames.header, count, kept.arrays)
+    return Checkpoint(count, kept.arrays)

@@ -1,4 +1,4 @@
-"""Options of a run that determine the contents of its file.
+"""Options of a run that determine the contents of its file, and the accuracies that end it.
 
 A field of `Contents` declares an option: its type, meaning and default, its attribute in the file, and the
 reasons that exclude it. The following are derived from this declaration: the checks and attributes of a
@@ -13,14 +13,18 @@ run.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import asdict, astuple, dataclass, field, fields
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from gaspart.errors import SceneError
 from gaspart.keys import TEXT, Kind, choice, count, declare, describe, flag
-from gaspart.scene.face_checks import refuse_open
+from gaspart.keys.values import number
+from gaspart.scene.boundaries import refuse_open
 from gaspart.scene.features import row_count
+from gaspart.scene.surfaces import wall_of
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.tally import TALLIES, Tally
 
@@ -64,9 +68,8 @@ def _check_correlations(key: str, value: Any) -> Correlations:
 
 
 def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
-    """Return requested tallies in the order of their declarations.
-
-    Raises SceneError if `value` does not consist of tallies.
+    """Return requested tallies in the order of their declarations. Raises SceneError if `value` does not
+    consist of tallies.
     """
     tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
     requested: dict[str, OptionalTally] = {}
@@ -85,9 +88,8 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`.
-
-    Raises SceneError for an unknown name, and TypeError for an unknown setting.
+    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`. Raises
+    SceneError for an unknown name, and TypeError for an unknown setting.
     """
     tallies = []
     for settings in json.loads(text):
@@ -100,9 +102,8 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 
 
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
-    """Return the tally of a class from the attributes of a trajectory, or None.
-
-    Raises SceneError and TypeError under the same conditions as `tallies_from_json`.
+    """Return the tally of a class from the attributes of a trajectory, or None. Raises SceneError and
+    TypeError under the same conditions as `tallies_from_json`.
     """
     tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)
@@ -224,9 +225,8 @@ def required_contents(needs: Collection[str]) -> dict[str, bool]:
 
 
 def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Contents` from the attributes of a file.
-
-    Raises SceneError, TypeError or ValueError for an attribute that cannot be used.
+    """Return the fields of `Contents` from the attributes of a file. Raises SceneError, TypeError or
+    ValueError for an attribute that cannot be used.
     """
     return {
         item.name: item.metadata["restore"](attributes[item.name])
@@ -236,10 +236,8 @@ def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of a recipe for settings in plain values.
-
-    Texts and mappings are converted to objects. Raises SceneError for an invalid text of a tally, or for
-    invalid correlations.
+    """Return the fields of a recipe for settings in plain values. Texts and mappings are converted to
+    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations.
 
     settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
     """
@@ -251,9 +249,8 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def contents_of(settings: Mapping[str, Any]) -> Contents:
-    """Return the `Contents` of a run's file from settings in plain values.
-
-    The settings are explained in `recipe_fields`.
+    """Return the `Contents` of a run's file from settings in plain values. The settings are explained in
+    `recipe_fields`.
     """
     names = {item.name for item in fields(Contents)}
     values = recipe_fields(
@@ -283,11 +280,140 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 
 
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
-    """Return the length of each axis of a tally's fields, by name, except `face`.
-
-    The length of an axis is the setting of the tally whose name is the plural of the axis name.
+    """Return the length of each axis of a tally's fields, by name, except `face`. The length of an axis is
+    the setting of the tally whose name is the plural of the axis name.
     """
     lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
     lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}
     own = (item.metadata for item in fields(Tally) if item.metadata.get("only") == tally.name)
     return {axis: lengths[axis] for data in own for axis in data.get("along", ()) if axis != "face"}
+
+
+# Runs that end at accuracies: required accuracies, and frame numbers of tests.
+
+
+_ACCURACIES = 1e-8, 1.0
+_FIRST_TESTS = 64, 96
+"""Numbers of frames at the first two tests.
+
+The number at each later test is twice the number two tests before. The ratios of successive numbers are 3/2
+and 4/3.
+"""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Requirement:
+    """Required accuracy of an observable, as stored in a file.
+
+    See `gaspart.Accuracy`, which validates observables.
+    """
+
+    observable: str
+    accuracy: float
+    start: float | None = None
+    face: str | None = None
+
+    def __post_init__(self) -> None:
+        low, high = _ACCURACIES
+        rule = f"must be from {low:g} to {high:g}, the relative standard error"
+        value = number("until.accuracy", self.accuracy, rule, least=low, most=high)
+        object.__setattr__(self, "accuracy", value)
+        if self.start is not None:
+            start = number("until.start", self.start, "must not be negative", least=0.0)
+            object.__setattr__(self, "start", start)
+        object.__setattr__(self, "face", wall_of(self.face))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Requirement) and astuple(self) == astuple(other)
+
+    def __hash__(self) -> int:
+        return hash(astuple(self))
+
+    @property
+    def name(self) -> str:
+        """Name of the observable as on the command line, with the face if one is prescribed."""
+        return self.observable if self.face is None else f"{self.observable}:{self.face}"
+
+
+@dataclass(frozen=True)
+class Until:
+    """Accuracies that a run must all reach, and its maximum duration (None: no maximum)."""
+
+    accuracies: tuple[Requirement, ...]
+    at_most: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.accuracies or not all(
+            isinstance(requirement, Requirement) for requirement in self.accuracies
+        ):
+            raise SceneError("until", self.accuracies, "must be a gaspart.Accuracy, or several")
+        names = [requirement.name for requirement in self.accuracies]
+        for name in names:
+            if names.count(name) > 1:
+                raise SceneError("until", name, "must be requested only once")
+        if self.at_most is not None:
+            longest = number("at_most", self.at_most, "must be positive", above=0.0)
+            object.__setattr__(self, "at_most", longest)
+
+    def most_frames(self, sample_interval: float) -> int | None:
+        """Return the maximum number of frames, including time 0; None if there is no limit.
+
+        Raises SceneError if the maximum duration has no frame after time 0.
+        """
+        if self.at_most is None:
+            return None
+        intervals = math.floor(min(self.at_most / sample_interval, 2.0**53) * (1.0 + _ROUNDING))
+        if intervals < 1:
+            rule = f"must be at least the sample_interval, {sample_interval:g}"
+            raise SceneError("at_most", self.at_most, rule)
+        return intervals + 1
+
+    def to_json(self) -> str:
+        """Return the accuracies for the attributes of a file."""
+        entries = [
+            {key: value for key, value in asdict(requirement).items() if value is not None}
+            for requirement in self.accuracies
+        ]
+        return json.dumps(entries)
+
+    @classmethod
+    def from_dict(cls, values: dict) -> Until:
+        """Make an instance from a mapping, the inverse of `dataclasses.asdict`.
+
+        Raises SceneError.
+        """
+        return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
+
+    @classmethod
+    def from_json(cls, text: str, at_most: float | None) -> Until:
+        """Make an instance from a text, the inverse of `to_json`.
+
+        Raises SceneError for invalid values, and TypeError or ValueError for a text of another form.
+        """
+        return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
+
+
+def examined_frames() -> Iterator[int]:
+    """Yield the numbers of frames at which accuracies are tested: 64, 96, 128, 192 ..."""
+    first, second = _FIRST_TESTS
+    while True:
+        yield first
+        yield second
+        first, second = 2 * first, 2 * second
+
+
+def is_examined(frames: int) -> bool:
+    """Return True if accuracies are tested at this number of frames."""
+    return next(count for count in examined_frames() if count >= frames) == frames
+
+
+def examined_before(frames: int) -> int | None:
+    """Return the number of frames of the last test before `frames`, or None."""
+    earlier = list(takewhile(lambda count: count < frames, examined_frames()))
+    return earlier[-1] if earlier else None
+
+
+def examined_from(frames: float) -> int:
+    """Return the number of frames of the first test with at least `frames` frames."""
+    return next(count for count in examined_frames() if count >= frames)

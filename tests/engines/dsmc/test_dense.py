@@ -8,7 +8,7 @@ from engines.dsmc.steps import advanced, make
 from scenes import gas
 
 import gaspart as gp
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.discretisation import contact_values
 
 pytestmark = pytest.mark.thorough

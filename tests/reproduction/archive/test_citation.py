@@ -42,11 +42,6 @@ def test_persons_and_organisations_are_read(tmp_path):
             "authors: Boltzmann",
             "CITATION.cff: authors = 'Boltzmann': must be a list",
         ),
-        (
-            "name: the others, ",
-            "",
-            "CITATION.cff: authors[1] = {'website': 'https://example.org'}: must have a name",
-        ),
     ],
 )
 def test_what_is_missing_is_named(tmp_path, old, new, line):

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 import gaspart as gp
-from gaspart.reproduction.archive.limits import digest_of_file, digest_of_numbers, joint_digest
+from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
 
 
 @pytest.fixture(scope="module")

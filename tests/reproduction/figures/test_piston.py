@@ -7,10 +7,11 @@ import pytest
 from reproduction.made import made
 
 import gaspart as gp
-from gaspart import theory
 from gaspart.reproduction.figures import piston
 from gaspart.reproduction.table import Table, from_rows
-from gaspart.theory import enskog_longitudinal_viscosity, mean_speed
+from gaspart.theory import mean_speed
+from gaspart.theory.enskog import enskog_longitudinal_viscosity
+from gaspart.theory.state import adiabatic_temperature
 
 CONTAINER = gp.Container((20.0, 10.0), ("wall", "periodic"))
 
@@ -66,7 +67,7 @@ def test_discs_that_expand(tmp_path):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_exponent_of_a_gas_that_is_also_heated(dimension):
     volume, heating = np.array([[0.5, 0.25]]), np.array([[0.01, 0.03]])
-    expected = theory.adiabatic_temperature(0.005 / volume, 0.005, dimension)
+    expected = adiabatic_temperature(0.005 / volume, 0.005, dimension)
     row = {"dimension": dimension, "packing_fraction": 0.005, "volume": volume, "heating": heating}
     row["temperature"] = expected**1.1 * np.exp(heating)
     path = Table(from_rows("path", [row], ("replica", "frame")), "path")[0]

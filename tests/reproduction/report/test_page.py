@@ -18,6 +18,7 @@ from gaspart.reproduction.report.explore import engines, series
 from gaspart.reproduction.report.page import (
     CHAPTERS,
     LIMIT,
+    Caption,
     Section,
     address,
     by_chapter,
@@ -34,8 +35,13 @@ from gaspart.theory.state import compressibility_factor
 ROW = {"figure": "cooling", "claim": "rate of cooling, discs", "measured": 0.93, "uncertainty": 0.02}
 
 
-def claim(kind, verdict):
-    return {"kind": kind, "verdict": verdict}
+def claim(kind, verdict, figure="cooling", uncertainty=0.1):
+    text = f"{kind} of {figure}"
+    return {"figure": figure, "claim": text, "kind": kind, "verdict": verdict, "uncertainty": uncertainty}
+
+
+def section(name, rows=(), finding="It cools"):
+    return Section(name, "granular", Caption(finding, finding, "", ""), list(rows), [], "", [])
 
 
 def test_every_family_is_in_a_chapter_of_the_page():
@@ -52,8 +58,13 @@ def test_findings_state_the_measured_number_of_their_figure():
         {"figure": "cooling", "text": "It cools at {{rate of cooling}}."},
         {"figure": "absent", "text": "No figure of this config."},
     ]
-    (finding,) = findings(chosen, [ROW, ROW | {"figure": "other"}])
-    assert finding == {"figure": "cooling", "text": "<p>It cools at 0.93(2).</p>"}
+    (finding,) = findings(chosen, [section("cooling", [ROW]), section("other", [ROW])])
+    assert finding == {"figure": "cooling", "text": "It cools at 0.93(2)."}
+
+
+def test_a_page_of_other_figures_opens_with_what_they_show():
+    shown = findings([{"figure": "absent", "text": "Nothing."}], [section("one"), section("two")])
+    assert shown == [{"figure": name, "text": "It cools."} for name in ("one", "two")]
 
 
 def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
@@ -62,6 +73,18 @@ def test_the_first_screen_counts_kinds_apart_and_names_what_disagrees():
     assert found["kinds"] == {"test": {"agrees": 1, "disagrees": 1}, "family": {"disagrees": 1}}
     assert sum(sum(verdicts.values()) for verdicts in found["kinds"].values()) == len(rows)
     assert found["disagree"] == rows[1:]
+
+
+def test_the_chance_that_true_claims_disagree_is_bounded_by_what_is_judged_together():
+    """Two figures with tests, a family, and an identity with an uncertainty: four 3-sigma tests."""
+    rows = [claim("test", "agrees"), claim("reproduction", "reproduced"), claim("test", "agrees", "other")]
+    rows += [
+        claim("family", "agrees"),
+        claim("identity", "agrees"),
+        claim("identity", "agrees", "other", 0.0),
+    ]
+    rows += [claim("test", "no verdict", "quoted")]
+    assert headline(rows)["chance"] == pytest.approx(4 * 0.0027, rel=1e-3)
 
 
 def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):

@@ -11,8 +11,8 @@ from gaspart.reproduction.report.explore import (
     Reference,
     cited_references,
     find_reference,
-    link_citations,
     read_references,
+    split_citations,
 )
 
 ROOT = Path(__file__).parents[3]
@@ -48,16 +48,16 @@ TEXTS |= {f"{path.parent.name}/{path.stem}": list(strings(path)) for path in CLA
     ("text", "names", "numbers"),
     [
         ("[Yeh 2004], with", ["Yeh and Hummer 2004"], [1]),
-        ("([van\nZon 1998]; [Ernst 1970])", ["(van Zon and others 1998", "Ernst and others 1970"], [2, 3]),
+        ("([van\nZon 1998]; [Ernst 1970])", ["van Zon and others 1998", "Ernst and others 1970"], [2, 3]),
         ("[Source C], Eq. 48; [source C]", ["Source C", "source C"], [4, 4]),
         ("Yeh 2004; [Hummer 2004], [0, 1]", [], []),
     ],
 )
-def test_a_citation_is_names_and_a_link_to_the_number_of_its_reference(text, names, numbers):
-    made = link_citations(text, BY_KEY)
-    assert [int(number) for number in re.findall(r'href="#reference-(\d+)"', made)] == numbers
-    assert all(f"{name}\N{NO-BREAK SPACE}<a " in made for name in names)
-    assert numbers or made == text
+def test_a_citation_is_names_and_a_reference(text, names, numbers):
+    parts = list(split_citations(text, BY_KEY))
+    assert [reference.number for _, reference in parts if reference] == numbers
+    assert [part for part, reference in parts if reference] == names
+    assert numbers or parts == [(text, None)]
 
 
 def test_only_cited_references_are_listed_and_numbered_from_1():
@@ -67,10 +67,7 @@ def test_only_cited_references_are_listed_and_numbered_from_1():
         ("Ernst 1970", 2),
         ("source C", 3),
     ]
-    assert (
-        'href="#reference-3"' in link_citations("[source C]", kept)
-        and cited_references(["nothing"], BY_KEY) == {}
-    )
+    assert cited_references(["nothing"], BY_KEY) == {}
 
 
 def test_a_reference_is_listed_by_authors_place_and_year():

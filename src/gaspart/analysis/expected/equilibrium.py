@@ -11,18 +11,18 @@ import numpy as np
 
 from gaspart import theory
 from gaspart.analysis import observables
-from gaspart.analysis.flow import FLOW
 from gaspart.analysis.run import Run
+from gaspart.analysis.run_data import FLOW
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.scene.faces import Thermal
 from gaspart.scene.gas import Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
+from gaspart.scene.surfaces import Thermal
 from gaspart.theory import bulk, discretisation
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 # Theory depends on the engine of a run and on its number of particles.
 #
@@ -83,9 +83,8 @@ def with_discretisation(
 
 
 def partners(run: Run) -> float:
-    """Return (N - 1) / N, the number of collision partners divided by N.
-
-    A particle has N - 1 partners, whereas the theory for an infinite system assumes N.
+    """Return (N - 1) / N, the number of collision partners divided by N. A particle has N - 1 partners,
+    whereas the theory for an infinite system assumes N.
     """
     return 1.0 - 1.0 / run.count
 
@@ -95,9 +94,8 @@ RELAXED = 10.0
 
 
 def is_relaxed(run: Run) -> bool:
-    """Return True if velocities have Maxwell's distribution in the measured part of a run.
-
-    Either they are drawn from it, or particles have changed them often enough.
+    """Return True if velocities have Maxwell's distribution in the measured part of a run. Either they are
+    drawn from it, or particles have changed them often enough.
     """
     scene = run.scene
     kinds, masses = scene.moving_kinds, [kind.mass for kind in scene.moving_kinds]
@@ -109,9 +107,8 @@ def is_relaxed(run: Run) -> bool:
 
 
 def changes_of_velocity(run: Run) -> np.ndarray:
-    """Return how often a particle has changed its speed until each frame, shape (T,).
-
-    Speeds change in collisions with particles that move, and at faces at a temperature.
+    """Return how often a particle has changed its speed until each frame, shape (T,). Speeds change in
+    collisions with particles that move, and at faces at a temperature.
     """
     scene, data = run.scene, run.data
     fixed = data["fixed_collisions"].values if "fixed_collisions" in data else 0.0
@@ -122,18 +119,15 @@ def changes_of_velocity(run: Run) -> np.ndarray:
 
 
 def is_mixed(run: Run, changes: float = RELAXED) -> bool:
-    """Return True if particles change their speeds often enough in the measured part of a run.
-
-    Otherwise means over the run depend on the velocities of its start.
+    """Return True if particles change their speeds often enough in the measured part of a run. Otherwise
+    means over the run depend on the velocities of its start.
     """
     return bool(np.ptp(changes_of_velocity(run)) >= changes)
 
 
 def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tuple[float, float] | None:
-    """Return the contact value of the N particles of a periodic gas, and its uncertainty.
-
-    Return None if the theory does not apply: for few particles at a high density
-    (`theory.finite_contact_value`).
+    """Return the contact value of the N particles of a periodic gas, and its uncertainty. Return None if the
+    theory does not apply: for few particles at a high density (`theory.finite_contact_value`).
     """
     lengths = np.array(run.scene.container.lengths)
     volume = packing_fraction * float(lengths.prod()) / run.count  # volume of a particle
@@ -146,10 +140,9 @@ def contact_of_number(run: Run, packing_fraction: float, dimension: int) -> tupl
 
 
 def scale_of_number(run: Run, mixture: Mixture) -> float | None:
-    """Return the contact value for N particles divided by the value for infinitely many particles.
-
-    For a mixture, the ratio for equal particles is used. Return None for fewer than `LEAST_OF_NUMBER`
-    particles, or if the ratio for equal particles is unknown.
+    """Return the contact value for N particles divided by the value for infinitely many particles. For a
+    mixture, the ratio for equal particles is used. Return None for fewer than `LEAST_OF_NUMBER` particles, or
+    if the ratio for equal particles is unknown.
     """
     eta, d = mixture.packing_fraction, mixture.dimension
     if run.count < LEAST_OF_NUMBER or (contact := contact_of_number(run, eta, d)) is None:
@@ -161,9 +154,8 @@ _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
 
 
 def compressibility_factor(run: Run) -> Expected | None:
-    """Compute the expected compressibility factor Z at fixed energy.
-
-    For the Boltzmann equation Z is 1. For the Enskog equation the result is exact, with N (N - 1) / 2 pairs.
+    """Compute the expected compressibility factor Z at fixed energy. For the Boltzmann equation Z is 1. For
+    the Enskog equation the result is exact, with N (N - 1) / 2 pairs.
     """
     equation = equation_of(run)
     if equation == BOLTZMANN:
@@ -199,10 +191,8 @@ def _enskog_contacts(mixture: Mixture) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def _pairs_of_enskog(mixture: Mixture) -> float:
-    """Compute Z - 1 of a mixture in the Enskog model.
-
-    Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j - delta_ij) sigma_ij^d g_ij, where S is the surface of a
-    unit sphere.
+    """Compute Z - 1 of a mixture in the Enskog model. Z - 1 = (S / 2 d N V) sum over pairs N_i (N_j -
+    delta_ij) sigma_ij^d g_ij, where S is the surface of a unit sphere.
     """
     d, (numbers, distances, contacts) = mixture.dimension, _enskog_contacts(mixture)
     diameters = np.diag(distances)
@@ -237,9 +227,8 @@ def contact_values(run: Run) -> Expected | None:
 
 
 def pair_rates(run: Run) -> Expected | None:
-    """Compute the expected collision rate of a particle of the first species of each pair.
-
-    Only collisions with the second species j count. The particle has N_j - delta_ij partners of this species.
+    """Compute the expected collision rate of a particle of the first species of each pair. Only collisions
+    with the second species j count. The particle has N_j - delta_ij partners of this species.
     """
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
@@ -264,12 +253,11 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """Compute the expected pressure on each wall (face,), at fixed distances of the walls.
-
-    For hard particles the result is the pressure of the fluid between hard walls. For point particles it is N
-    k_B T divided by the accessible volume. `touched` (d,) are the side lengths of the accessible volume.
-    Particles that hardly collide keep the energies along the axes that they have at the start: the scatter of
-    these energies is part of the uncertainty.
+    """Compute the expected pressure on each wall (face,), at fixed distances of the walls. For hard particles
+    the result is the pressure of the fluid between hard walls. For point particles it is N k_B T divided by
+    the accessible volume. `touched` (d,) are the side lengths of the accessible volume. Particles that hardly
+    collide keep the energies along the axes that they have at the start: the scatter of these energies is
+    part of the uncertainty.
     """
     gas, equation = run.scene.gas, equation_of(run)
     if gas is None or equation == ENSKOG:
@@ -308,10 +296,8 @@ def wall_force(run: Run) -> Expected | None:
 
 
 def pressure_tensor(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected pressure tensor.
-
-    The diagonal components are n k_B T [(1 - 1/N) + Z_N - 1]. The term 1 - 1/N is the kinetic part:
-    velocities are relative to the centre of mass.
+    """Compute the expected pressure tensor. The diagonal components are n k_B T [(1 - 1/N) + Z_N - 1]. The
+    term 1 - 1/N is the kinetic part: velocities are relative to the centre of mass.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not is_mixed(run):
@@ -332,12 +318,11 @@ def pressure_tensor(run: Run, temperature: float) -> Expected | None:
 
 
 def speeds(run: Run, edges: np.ndarray, mass: float | None, fixed: bool) -> Expected | None:
-    """Compute Maxwell's density (bins,) of speeds; None unless all particles have the same mass.
-
-    The bins lie between `edges`. If `fixed` is True, the kinetic energy is constant, and the exact
-    distribution for the finite number of particles is used. Spins share in a constant energy: the
-    distribution is exact with their degrees of freedom. If a potential shares in it, the distribution lies
-    between the one at a constant kinetic energy and Maxwell's, whose difference is the uncertainty.
+    """Compute Maxwell's density (bins,) of speeds; None unless all particles have the same mass. The bins lie
+    between `edges`. If `fixed` is True, the kinetic energy is constant, and the exact distribution for the
+    finite number of particles is used. Spins share in a constant energy: the distribution is exact with their
+    degrees of freedom. If a potential shares in it, the distribution lies between the one at a constant
+    kinetic energy and Maxwell's, whose difference is the uncertainty.
     """
     scene = run.scene
     if mass is None or not scene.has_equilibrium or not (is_relaxed(run) and is_mixed(run)):
@@ -362,10 +347,9 @@ def _densities(run: Run, edges: np.ndarray, mass: float, freedoms: int | None) -
 
 
 def expect(name: str, run: Run, *arguments: Any, **keywords: Any) -> Expected | None:
-    """Return the theory of an observable of a run; None if no theory exists.
-
-    The uncertainty includes the errors of the cells and steps of the engine. The theory's function is called
-    with the run, `arguments` and `keywords`.
+    """Return the theory of an observable of a run; None if no theory exists. The uncertainty includes the
+    errors of the cells and steps of the engine. The theory's function is called with the run, `arguments` and
+    `keywords`.
     """
     declared = observables.OBSERVABLES[name]
     if not declared.theory or run.about != FLOW:  # the theory describes motion relative to the flow
@@ -379,10 +363,9 @@ def expect(name: str, run: Run, *arguments: Any, **keywords: Any) -> Expected | 
 
 
 def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
-    """Return the units and the label of an observable, and its theoretical value for a run.
-
-    For the arguments see `expect`. The theory consists of values, their uncertainties, and a source. It
-    is absent if no theory exists.
+    """Return the units and the label of an observable, and its theoretical value for a run. For the arguments
+    see `expect`. The theory consists of values, their uncertainties, and a source. It is absent if no theory
+    exists.
     """
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     if (expected := expect(name, run, *arguments, **keywords)) is None:

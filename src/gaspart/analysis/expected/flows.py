@@ -14,12 +14,13 @@ import numpy as np
 from gaspart import theory
 from gaspart.analysis.expected.equilibrium import Expected, equation_of
 from gaspart.analysis.run import Run
-from gaspart.scene.faces import Thermal
+from gaspart.scene.boundaries import flow
 from gaspart.scene.scene import Scene
-from gaspart.scene.shear import flow
+from gaspart.scene.surfaces import Thermal
 from gaspart.scene.walls import Plate
 from gaspart.theory.bulk import BOLTZMANN
-from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP
+from gaspart.theory.heat import INTERPOLATED, TEMPERATURE_JUMP, interpolated_flux
+from gaspart.theory.shear import VELOCITY_SLIP, channel_velocity, interpolated_stress
 
 # Heat flux and shear stress of a gas between two thermal plates, from free molecular flow to the continuum.
 
@@ -48,9 +49,7 @@ _PLAIN = {"thermal", "sliding", "accommodation", "centres_to_walls"}
 
 @dataclass(frozen=True)
 class Plates:
-    """Equal smooth and elastic particles between two thermal plates.
-
-    A force may act along the plates.
+    """Equal smooth and elastic particles between two thermal plates. A force may act along the plates.
 
     axis : axis normal to the plates.
     length : width of the gap that is accessible to particle centres.
@@ -81,10 +80,9 @@ class Plates:
 
     @property
     def freedom(self) -> float:
-        """Mean free path divided by the path between two hits at which new velocities are drawn.
-
-        The plate with the smaller accommodation coefficient determines this ratio. If both plates draw a new
-        velocity at every hit, the ratio is the Knudsen number.
+        """Mean free path divided by the path between two hits at which new velocities are drawn. The plate
+        with the smaller accommodation coefficient determines this ratio. If both plates draw a new velocity
+        at every hit, the ratio is the Knudsen number.
         """
         return self.knudsen * min(self.accommodation)
 
@@ -101,9 +99,8 @@ class Plates:
 
 
 def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
-    """Compute the steady heat (face,) that flows into faces, per area and time.
-
-    `faces` are the numbers of the faces.
+    """Compute the steady heat (face,) that flows into faces, per area and time. `faces` are the numbers of
+    the faces.
     """
     if _in_equilibrium(run):
         return Expected(np.zeros(len(faces)), 0.0, "equilibrium")
@@ -120,9 +117,8 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the steady momentum (face, component) that faces receive, per area and time.
-
-    The components are along `axes`.
+    """Compute the steady momentum (face, component) that faces receive, per area and time. The components are
+    along `axes`.
     """
     if driven := _weight_on_faces(run, faces, axes):
         return driven
@@ -144,9 +140,8 @@ def _times(expected: Expected, factors: np.ndarray) -> Expected:
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
-    """Return the plates of a run; None unless the gas is between two plates.
-
-    If `driven` is True, the gas must be one that a force drives along the plates.
+    """Return the plates of a run; None unless the gas is between two plates. If `driven` is True, the gas
+    must be one that a force drives along the plates.
     """
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
@@ -180,9 +175,8 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 
 
 def _free_path(density: float, diameter: float, run: Run) -> float:
-    """Return the mean free path of spheres for the equation of the run.
-
-    The result is 0 if the density exceeds the range of the theory.
+    """Return the mean free path of spheres for the equation of the run. The result is 0 if the density
+    exceeds the range of the theory.
     """
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
@@ -216,7 +210,7 @@ def _heat_between_plates(plates: Plates, points: bool) -> Expected | None:
     unit, scale = 1.0 / math.sqrt(plates.mass), _POINTS if points else 1.0
     gap = (plates.length, plates.density / scale**2, hot, cold, plates.diameter * scale)
     if plates.knudsen > FLUID:
-        flux = unit * scale**2 * theory.interpolated_flux(*gap)
+        flux = unit * scale**2 * interpolated_flux(*gap)
         return Expected(flux, flux * INTERPOLATED, f"{_describe_interpolation('heat')}, {at}")
     try:
         flux = unit * scale**2 * theory.conducting_slab(*gap).flux
@@ -242,7 +236,7 @@ def _stress_between_plates(plates: Plates, run: Run) -> Expected | None:
     unit = math.sqrt(plates.mass * temperature)
     gap = (plates.length, plates.density, speed, plates.diameter)
     if plates.knudsen > FLUID:
-        stress = unit * float(theory.interpolated_stress(*gap))
+        stress = unit * float(interpolated_stress(*gap))
         return Expected(stress, stress * INTERPOLATED, f"{_describe_interpolation('stress')}, {at}")
     stress = unit * float(theory.slip_flow_stress(*gap))
     error = stress * (plates.knudsen**2 + heating_of(plates))
@@ -255,9 +249,8 @@ def dilute(plates: Plates, run: Run) -> bool:
 
 
 def heating_of(plates: Plates) -> float:
-    """Compute the relative rise of the temperature midway between sliding plates by friction.
-
-    For spheres the rise is 2/15 m u^2 in units of k_B T, where u is half of the relative speed of the plates.
+    """Compute the relative rise of the temperature midway between sliding plates by friction. For spheres the
+    rise is 2/15 m u^2 in units of k_B T, where u is half of the relative speed of the plates.
     """
     square = float((plates.slide**2).sum())
     return plates.mass * square / (30.0 * max(plates.temperatures))
@@ -278,10 +271,9 @@ def _friction(plates: Plates, run: Run) -> Expected | None:
 
 
 def _weight_on_faces(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the stress on two faces along which a force drives the gas.
-
-    Each face bears half of the total force on the gas. The value is exact if all particles reach the same
-    area of the faces, and if no other wall rubs the particles.
+    """Compute the stress on two faces along which a force drives the gas. Each face bears half of the total
+    force on the gas. The value is exact if all particles reach the same area of the faces, and if no other
+    wall rubs the particles.
     """
     scene, driven = run.scene, run.scene.driven_axes
     equal = len(faces) == 2 and faces[0] // 2 == faces[1] // 2 and len(scene.faces) == 2
@@ -322,10 +314,8 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
 
 
 def _drift(run: Run) -> np.ndarray:
-    """Compute the velocity (d, 1) of the centre of mass.
-
-    In a sheared gas, the velocity is relative to the flow. The component along an axis is set to 0 if the
-    momentum along this axis is not conserved.
+    """Compute the velocity (d, 1) of the centre of mass. In a sheared gas, the velocity is relative to the
+    flow. The component along an axis is set to 0 if the momentum along this axis is not conserved.
     """
     momentum, largest = np.zeros(run.dimension), 0.0
     for _, part in run.parts():
@@ -360,7 +350,7 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
     if plates.dimension == 2 or not fluid:
         return None
     path = plates.knudsen * plates.length
-    gap = plates.length + 2.0 * theory.VELOCITY_SLIP * path
+    gap = plates.length + 2.0 * VELOCITY_SLIP * path
     middle = 0.5 * run.scene.container.lengths[axis]
     values = mean + np.multiply.outer(plates.slide, (positions - middle) / gap)
     wrong = np.abs(plates.slide)[:, None] * (plates.knudsen**2 + heating_of(plates))
@@ -369,12 +359,10 @@ def _between_plates(plates: Plates, run: Run, axis: int, positions: np.ndarray) 
 
 
 def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray) -> Expected | None:
-    """Compute the velocity of a gas that a force drives along resting, equally hot plates.
-
-    The uncertainty includes the next order of the slip, the packing fraction, and half of the frictional
-    heating of the gas. In units of k_B T, the heating in the middle is 4/45 m u^2, where u is the maximum
-    velocity. The heating at the plates is 32/45 m u^2 times the temperature jump coefficient times the
-    Knudsen number.
+    """Compute the velocity of a gas that a force drives along resting, equally hot plates. The uncertainty
+    includes the next order of the slip, the packing fraction, and half of the frictional heating of the gas.
+    In units of k_B T, the heating in the middle is 4/45 m u^2, where u is the maximum velocity. The heating
+    at the plates is 32/45 m u^2 times the temperature jump coefficient times the Knudsen number.
     """
     slow = not plates.slide.any() and plates.equal and axis == plates.axis
     if (
@@ -388,7 +376,7 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
     from_middle = positions - 0.5 * run.scene.container.lengths[axis]
     near = np.abs(from_middle) > 0.5 * length - 2.0 * plates.knudsen * length
     heights = np.append(np.where(near, 0.0, from_middle), 0.0) + 0.5 * length  # heating in the middle
-    speeds = theory.channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
+    speeds = channel_velocity(heights, length, plates.density, 1.0, plates.diameter)
     force = plates.mass * np.array(run.scene.gravity) / math.sqrt(plates.mass * temperature)
     values = np.multiply.outer(force, speeds)
     fastest = values[:, -1]
@@ -430,10 +418,8 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
 
 
 def _zero_flux(run: Run) -> Expected | None:
-    """Return the zero flux of a steady state.
-
-    Return None if particles start in a part of the container, or if a face is a piston, because gas then
-    flows.
+    """Return the zero flux of a steady state. Return None if particles start in a part of the container, or
+    if a face is a piston, because gas then flows.
     """
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
@@ -449,10 +435,9 @@ def _path(run: Run) -> float:
 
 
 def opening(scene: Scene, axis: int, position: float, radius: float) -> float | None:
-    """Compute the area of the openings between interior walls through which centres can pass.
-
-    The walls lie in a plane across the axis. In two dimensions the area is a length. Return None if no wall
-    lies in the plane, or if a plate is not parallel to the axes.
+    """Compute the area of the openings between interior walls through which centres can pass. The walls lie
+    in a plane across the axis. In two dimensions the area is a length. Return None if no wall lies in the
+    plane, or if a plate is not parallel to the axes.
     """
     across = [k for k in range(scene.dimension) if k != axis]
     near, length = 1e-9 * scene.container.lengths[axis], scene.container.lengths[axis]

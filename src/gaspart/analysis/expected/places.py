@@ -17,9 +17,11 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.theory.finite_size import insertion_potential
+from gaspart.theory.mixture_properties import mixture_insertion_correction, percus_yevick_partial_factors
+from gaspart.trajectory.correlator import pairs_of
 
 _LEAST_UNIFORM = 16
 """Minimum number of hard particles with a uniform density in a run that conserves momentum. Relative to the
@@ -41,10 +43,9 @@ _NODES = 6  # nodes of the mean over a bin
 
 
 def radial_distribution(run: Run, distance: np.ndarray, width: float) -> Expected | None:
-    """Compute the mean of g(r) in bins (distance,) of a width: 1 for point particles.
-
-    For equal spheres it is the approximation of Verlet and Weis. Its contact value and compressibility are
-    Carnahan and Starling's. For hard discs no theory is given.
+    """Compute the mean of g(r) in bins (distance,) of a width: 1 for point particles. For equal spheres it is
+    the approximation of Verlet and Weis. Its contact value and compressibility are Carnahan and Starling's.
+    For hard discs no theory is given.
     """
     equation, gas = equation_of(run), run.fluid
     if not is_mixed(run, 1.0):  # each pair keeps its relative velocity
@@ -74,9 +75,8 @@ def _of_points(run: Run, values: Any) -> Expected | None:
 
 
 def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
-    """Compute the expected S(k) (wave_number,).
-
-    For equal spheres it is the approximation of Verlet and Weis; for point particles it is 1.
+    """Compute the expected S(k) (wave_number,). For equal spheres it is the approximation of Verlet and Weis;
+    for point particles it is 1.
     """
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
@@ -88,10 +88,9 @@ def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
 
 
 def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | None:
-    """Compute the expected partial structure factors (pair, wave_number).
-
-    The factors are known for spheres if each species has a single size. For point particles, the factor of a
-    species with itself is 1 and the factor of two different species is 0.
+    """Compute the expected partial structure factors (pair, wave_number). The factors are known for spheres
+    if each species has a single size. For point particles, the factor of a species with itself is 1 and the
+    factor of two different species is 0.
     """
     equation, mixture, species = equation_of(run), run.mixture, run.scene.species
     pairs = pairs_of(run.scene)
@@ -110,16 +109,15 @@ def partial_structure_factors(run: Run, wave_number: np.ndarray) -> Expected | N
         factors = np.array([[parts[a] * parts[b]] for a, b in pairs])
         return total._replace(value=same + factors * (total.value - 1.0))
     diameters = [2.0 * kind.radius for kind in species]
-    factors = theory.percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
+    factors = percus_yevick_partial_factors(wave_number, mixture.packing_fraction, diameters, counts)
     return Expected(np.array([factors[:, a, b] for a, b in pairs]), np.nan, "Percus and Yevick, Lebowitz")
 
 
 def chemical_potential(run: Run) -> Expected | None:
-    """Compute the expected chemical potential for insertion into a finite number of particles.
-
-    For hard particles the chemical potential follows from the equation of state. For point particles the
-    result is exact, because no particle may be nearer to the inserted position than the sum of the radii. The
-    result is a scalar for equal particles; otherwise it has the shape (species,).
+    """Compute the expected chemical potential for insertion into a finite number of particles. For hard
+    particles the chemical potential follows from the equation of state. For point particles the result is
+    exact, because no particle may be nearer to the inserted position than the sum of the radii. The result is
+    a scalar for equal particles; otherwise it has the shape (species,).
     """
     equation, mixture = equation_of(run), run.mixture
     if equation == ENSKOG or mixture is None:
@@ -132,7 +130,7 @@ def chemical_potential(run: Run) -> Expected | None:
     if run.scene.alike:
         side = min(run.scene.container.lengths) / diameters[0]
         try:
-            value, error = theory.insertion_potential(eta, d, run.count, side)
+            value, error = insertion_potential(eta, d, run.count, side)
         except ValueError:
             return None
         return Expected(value, error, "Gibbs and Duhem, of this number")
@@ -142,7 +140,7 @@ def chemical_potential(run: Run) -> Expected | None:
     numbers = np.bincount(which, counts)
     try:
         value = theory.mixture_chemical_potentials(eta, d, sizes, numbers)
-        value += theory.mixture_insertion_correction(eta, d, sizes, numbers)
+        value += mixture_insertion_correction(eta, d, sizes, numbers)
     except SceneError:  # the differences need densities above the range of the equation of state
         return None
     source = "equation of state of Santos, Yuste and Lopez de Haro, of these numbers"
@@ -150,9 +148,8 @@ def chemical_potential(run: Run) -> Expected | None:
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
-    """Compute the chemical potential of insertion among particles at independent positions.
-
-    Return None if the container is so small that a particle could overlap with two images of another.
+    """Compute the chemical potential of insertion among particles at independent positions. Return None if
+    the container is so small that a particle could overlap with two images of another.
     """
     between = 0.5 * np.add.outer(diameters, diameters)
     covered = np.array(
@@ -166,10 +163,9 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 
 
 def temperature(run: Run) -> Expected | None:
-    """Return the equilibrium temperature, which is uniform.
-
-    At a constant energy of N particles, a particle that rises takes energy from all others. The uncertainty
-    is the corresponding difference between the lowest and the highest position.
+    """Return the equilibrium temperature, which is uniform. At a constant energy of N particles, a particle
+    that rises takes energy from all others. The uncertainty is the corresponding difference between the
+    lowest and the highest position.
     """
     scene = run.scene
     if scene.faces or scene.face_temperatures or not scene.has_equilibrium or not is_relaxed(run):
@@ -183,10 +179,9 @@ def temperature(run: Run) -> Expected | None:
 
 
 def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expected | None:
-    """Compute the expected density (bins,) of all particles, if they are equal.
-
-    Without gravity along the axis the density is uniform. With gravity it is hydrostatic; for point particles
-    it follows the barometric law.
+    """Compute the expected density (bins,) of all particles, if they are equal. Without gravity along the
+    axis the density is uniform. With gravity it is hydrostatic; for point particles it follows the barometric
+    law.
     """
     scene = run.scene
     covers_all = species is None or run.count == len(np.flatnonzero(run.species == species))
@@ -204,10 +199,9 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
 
 
 def _is_uniform(run: Run, axis: int) -> bool:
-    """Return True if the density of equal particles is uniform along a periodic axis.
-
-    No face may distinguish positions along the axis. The particles must not start in a part of the container.
-    They must be a fluid: a crystal stays where it is.
+    """Return True if the density of equal particles is uniform along a periodic axis. No face may distinguish
+    positions along the axis. The particles must not start in a part of the container. They must be a fluid: a
+    crystal stays where it is.
     """
     scene = run.scene
     if scene.moving_axes or scene.ramps:

@@ -25,7 +25,9 @@ from gaspart.scene.gas import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
+from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, VISCOSITY_RATIO_UNCERTAINTY, velocity_decay_rate
 from gaspart.theory.discretisation import contact_values
+from gaspart.theory.mixture_properties import dilute_mixture_conductivity
 from gaspart.theory.modes import diffusion_by_modes
 
 _WINDOW = 12.0, 24.0
@@ -35,9 +37,8 @@ _WINDOW = 12.0, 24.0
 
 
 def mean_squared_displacement(run: Run, time: np.ndarray, axes: bool = False) -> Expected | None:
-    """Compute the expected mean-squared displacement (lag,) from the linear Boltzmann equation.
-
-    If `axes` is True, the result is the mean-squared displacement along each axis.
+    """Compute the expected mean-squared displacement (lag,) from the linear Boltzmann equation. If `axes` is
+    True, the result is the mean-squared displacement along each axis.
     """
     gas = None if run.is_subset else run.moving_fluid
     if gas is None or not is_relaxed(run):
@@ -64,7 +65,7 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
     if gas is None or not is_relaxed(run):
         return None
     equation = equation_of(run)
-    rate = float(theory.velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
+    rate = float(velocity_decay_rate(**gas.parameters, contact=bulk.contact_value(gas, equation)))
     source = SOURCES[equation]
     decay = gas.temperature / gas.mass * np.exp(-rate * time)
     return Expected(decay, math.nan, f"{source}, exact initial decay")
@@ -100,17 +101,16 @@ def diffusion_in_cube(
     scene: Scene | None,
     window: np.ndarray | tuple[float, float] = _WINDOW,
 ) -> Expected | None:
-    """Compute D of spheres in a periodic cube, for the engine of a scene.
-
-    Without an engine, the exact dynamics is assumed. For the exact dynamics, D is the value of Erpenbeck and
-    Wood minus two corrections: the finite-size correction of Yeh and Hummer, and the contribution of the
-    modes of the container after the window of the slope. Half of the second correction is uncertain. For a
-    kinetic equation, D is the value of this equation plus the contribution of the flow in the container,
-    which the cells of the engine resolve. The uncertainty consists of half of both corrections, without the
-    systematic error of the engine. Return None for discs, for spheres denser than the fluid, and for a cube
-    so small that the periodic images order the fluid.
+    """Compute D of spheres in a periodic cube, for the engine of a scene. Without an engine, the exact
+    dynamics is assumed. For the exact dynamics, D is the value of Erpenbeck and Wood minus two corrections:
+    the finite-size correction of Yeh and Hummer, and the contribution of the modes of the container after the
+    window of the slope. Half of the second correction is uncertain. For a kinetic equation, D is the value of
+    this equation plus the contribution of the flow in the container, which the cells of the engine resolve.
+    The uncertainty consists of half of both corrections, without the systematic error of the engine. Return
+    None for discs, for spheres denser than the fluid, and for a cube so small that the periodic images order
+    the fluid.
     """
-    if gas.dimension == 2 or gas.packing_fraction > theory.ERPENBECK_WOOD_HIGHEST:
+    if gas.dimension == 2 or gas.packing_fraction > ERPENBECK_WOOD_HIGHEST:
         return None
     if engine is None or scene is None or engine.equation == EXACT:
         try:
@@ -134,10 +134,9 @@ def diffusion_in_cube(
 
 
 def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
-    """Compute the difference between the long-time limit of D(t) and its value in a window.
-
-    The window of the slope is in collisions of a particle. The difference is due to the hydrodynamic modes of
-    the container (`theory.diffusion_modes`).
+    """Compute the difference between the long-time limit of D(t) and its value in a window. The window of the
+    slope is in collisions of a particle. The difference is due to the hydrodynamic modes of the container
+    (`theory.diffusion_modes`).
     """
     unit = gas.diameter / gas.thermal_speed
     times = np.linspace(float(window[0]), float(window[1]), 9) / bulk.collision_rate(gas, EXACT) / unit
@@ -146,9 +145,8 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
 
 
 def mutual_diffusion(run: Run) -> Expected | None:
-    """Compute the mutual diffusion coefficient in Enskog's first approximation.
-
-    The contact values depend on the equation of the engine.
+    """Compute the mutual diffusion coefficient in Enskog's first approximation. The contact values depend on
+    the equation of the engine.
     """
     kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
     if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
@@ -171,12 +169,10 @@ def mutual_diffusion(run: Run) -> Expected | None:
 def _transport(
     run: Run, temperature: float, coefficient: Callable[[Gas, str], float], kind: str = ""
 ) -> Expected | None:
-    """Compute a transport coefficient from fluctuations of N particles at fixed energy.
-
-    In a dilute gas of N particles the coefficients are smaller than in an infinite gas.
-    `theory.transport_finite_size_factor` gives this factor to first order in 1/N for some kinds of
-    coefficients. Its square is the uncertainty; without a factor, 1/N is. There is no theory for fewer than
-    `LEAST_OF_NUMBER` particles.
+    """Compute a transport coefficient from fluctuations of N particles at fixed energy. In a dilute gas of N
+    particles the coefficients are smaller than in an infinite gas. `theory.transport_finite_size_factor`
+    gives this factor to first order in 1/N for some kinds of coefficients. Its square is the uncertainty;
+    without a factor, 1/N is. There is no theory for fewer than `LEAST_OF_NUMBER` particles.
     """
     gas, equation = run.fluid, equation_of(run)
     if gas is None or not temperature > 0.0 or gas.count < LEAST_OF_NUMBER or not is_mixed(run):
@@ -186,7 +182,7 @@ def _transport(
         return None
     if equation == EXACT:
         measured = coefficient is bulk.shear_viscosity and gas.dimension == 3
-        error = theory.VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
+        error = VISCOSITY_RATIO_UNCERTAINTY * value if measured else math.nan
         source = f"Enskog{', and the ratio measured in a dense gas' if measured else ''}"
         return Expected(value, error, source)
     error = value / gas.count
@@ -197,9 +193,8 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected bulk viscosity from fluctuations.
-
-    In the Boltzmann equation it is 0, and the result is the value of the engine's cells.
+    """Compute the expected bulk viscosity from fluctuations. In the Boltzmann equation it is 0, and the
+    result is the value of the engine's cells.
     """
     expected, engine = _transport(run, temperature, bulk.bulk_viscosity), engine_of(run)
     if expected is None or engine is None or engine.equation != BOLTZMANN:
@@ -209,25 +204,21 @@ def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected thermal conductivity from fluctuations.
-
-    For a mixture of point particles the result is the value of Chapman and Enskog.
+    """Compute the expected thermal conductivity from fluctuations. For a mixture of point particles the
+    result is the value of Chapman and Enskog.
     """
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
         return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
     if equation_of(run) != BOLTZMANN or mixture.dimension == 2 or not is_mixed(run):
         return None
-    value = theory.dilute_mixture_conductivity(
-        mixture.diameters, mixture.counts, temperature, masses=mixture.masses
-    )
+    value = dilute_mixture_conductivity(mixture.diameters, mixture.counts, temperature, masses=mixture.masses)
     return Expected(value, math.nan, f"{SOURCES[BOLTZMANN]}, first approximation")
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected shear viscosity from fluctuations.
-
-    For a sheared gas the result is the response to a small shear rate.
+    """Compute the expected shear viscosity from fluctuations. For a sheared gas the result is the response to
+    a small shear rate.
     """
     if run.scene.shear_rate is None:
         return _transport(run, temperature, bulk.shear_viscosity, "viscosity")

@@ -34,9 +34,8 @@ def positive_errors(errors: ArrayLike, size: int) -> np.ndarray:
 
 
 def positive_freedoms(freedoms: ArrayLike, size: int) -> np.ndarray:
-    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive.
-
-    The degrees of freedom may be infinite.
+    """Return degrees of freedom broadcast to (size,); raise ValueError unless positive. The degrees of
+    freedom may be infinite.
     """
     freedoms = np.broadcast_to(np.asarray(freedoms, dtype=float), (size,))
     if not np.all(freedoms > 0.0):
@@ -54,12 +53,10 @@ sums.
 
 @dataclass(frozen=True)
 class CorrelatedMean:
-    """Mean of a correlated series, with errors from blocks.
-
-    `errors[k]` is the standard error from blocks of `lengths[k]` samples. `flat` is True if, beyond some
-    block length, the error no longer grows by more than its own uncertainty. The series is then long enough.
-    `block_length` is the shortest block length for which this holds, and `blocks` is the number of blocks of
-    this length.
+    """Mean of a correlated series, with errors from blocks. `errors[k]` is the standard error from blocks of
+    `lengths[k]` samples. `flat` is True if, beyond some block length, the error no longer grows by more than
+    its own uncertainty. The series is then long enough. `block_length` is the shortest block length for which
+    this holds, and `blocks` is the number of blocks of this length.
     """
 
     estimate: Estimate
@@ -81,16 +78,15 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16, fitted: int = 1
     (Berk, Ann. Stat. 2, 489 (1974)). The error is correct for independent, correlated and anticorrelated
     series. Its own uncertainty, from the fitted coefficients, is expressed as degrees of freedom: 13 for 200
     independent samples. The degrees of freedom are at most the number of changes between consecutive samples.
-    A constant series gives no information on its error: the error is 0 with one degree of freedom.
-
-    Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The
-    error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks
-    has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that
-    satisfies a condition: every greater block length gives an error that is larger at most by its own
-    uncertainty. The error from these blocks is not used as the result, because it is the first error that is
-    not clearly too small. On average it would be too small by 5 to 40 % for 16 to 300 autocorrelation times.
-    At least `minimum_blocks` (>= 4) samples are needed. Samples at the start that do not fill a block do not
-    belong to any block.
+    A constant series gives no information on its error: the error is 0 with one degree of freedom. Blocks
+    show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The error
+    from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks has the
+    relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that satisfies a
+    condition: every greater block length gives an error that is larger at most by its own uncertainty. The
+    error from these blocks is not used as the result, because it is the first error that is not clearly too
+    small. On average it would be too small by 5 to 40 % for 16 to 300 autocorrelation times. At least
+    `minimum_blocks` (>= 4) samples are needed. Samples at the start that do not fill a block do not belong to
+    any block.
     """
     if minimum_blocks < 4:
         raise ValueError(f"minimum_blocks: {minimum_blocks} (must be at least 4)")
@@ -124,16 +120,15 @@ def correlated_mean(series: ArrayLike, minimum_blocks: int = 16, fitted: int = 1
 
 
 def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
-    """Compute the mean of a series whose correlations may decay as 1/t, and its error.
-
-    Particles cross a container at all speeds, and slow particles stay in it for a long time. So without
-    collisions, the correlation of the number of particles inside decays with the time difference t as L / t,
-    where L is the length of the container. The sum of these correlations grows as the logarithm of the length
-    of the run. An autoregressive fit of finite order does not include this growth. Therefore the squared
-    error of the mean of blocks, multiplied by the block length, is fitted by a linear function of the
-    logarithm of this length. The fit uses blocks between a quarter of the longest length and the longest
-    length. The fit is extrapolated to the length of the series. The result is the larger of this error and
-    the error of `correlated_mean`.
+    """Compute the mean of a series whose correlations may decay as 1/t, and its error. Particles cross a
+    container at all speeds, and slow particles stay in it for a long time. So without collisions, the
+    correlation of the number of particles inside decays with the time difference t as L / t, where L is the
+    length of the container. The sum of these correlations grows as the logarithm of the length of the run. An
+    autoregressive fit of finite order does not include this growth. Therefore the squared error of the mean
+    of blocks, multiplied by the block length, is fitted by a linear function of the logarithm of this length.
+    The fit uses blocks between a quarter of the longest length and the longest length. The fit is
+    extrapolated to the length of the series. The result is the larger of this error and the error of
+    `correlated_mean`.
     """
     plain = correlated_mean(series, minimum_blocks)
     squares, own = plain.errors**2, plain.estimate
@@ -148,12 +143,10 @@ def slow_mean(series: ArrayLike, minimum_blocks: int = 16) -> Estimate:
 
 
 def autocorrelation_time(series: ArrayLike) -> float:
-    """Compute the integrated autocorrelation time in samples: 1/2 + the sum of rho(k).
-
-    The autocorrelation time is 1/2 for independent samples, and smaller for anticorrelated samples.
-
-    For n samples, the squared error of the mean from `correlated_mean` is the variance times 2 time / n. So
-    the series is equivalent to n / (2 time) independent samples. For a constant series the result is 1/2.
+    """Compute the integrated autocorrelation time in samples: 1/2 + the sum of rho(k). The autocorrelation
+    time is 1/2 for independent samples, and smaller for anticorrelated samples. For n samples, the squared
+    error of the mean from `correlated_mean` is the variance times 2 time / n. So the series is equivalent to
+    n / (2 time) independent samples. For a constant series the result is 1/2.
     """
     series = series_of("series", series, 4)
     spectrum = _spectrum(series)[0]
@@ -166,13 +159,12 @@ def count_changes(series: np.ndarray) -> int:
 
 
 def common_freedom(series: np.ndarray) -> float:
-    """Compute common degrees of freedom for the errors of several similarly correlated series.
-
-    If the estimated correlation time of a series is too small by chance, its error is too small and its
-    number of degrees of freedom too large. The mean autocorrelation of all series therefore gives a common
-    number of degrees of freedom. For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values
-    deviate by more than three standard deviations if each series has its own number of degrees of freedom. If
-    this number is limited to the common number, only 0.7 % do so (`tests/analysis/test_small_numbers.py`).
+    """Compute common degrees of freedom for the errors of several similarly correlated series. If the
+    estimated correlation time of a series is too small by chance, its error is too small and its number of
+    degrees of freedom too large. The mean autocorrelation of all series therefore gives a common number of
+    degrees of freedom. For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values deviate
+    by more than three standard deviations if each series has its own number of degrees of freedom. If this
+    number is limited to the common number, only 0.7 % do so (`tests/analysis/test_small_numbers.py`).
 
     series : (n, m), m series of n samples; constant series are ignored. The result is infinite if all series
         are constant.
@@ -196,13 +188,11 @@ def _order(number: int) -> int:
 
 
 def _spectrum(series: np.ndarray, fitted: int = 1) -> tuple[float, float]:
-    """Compute the sum of the autocovariances of a series over all lags.
-
-    The degrees of freedom of this estimate are also returned.
-
-    Autocovariances relative to the measured mean are too small by their sum divided by the number n of
-    samples. So a first estimate of this sum divided by n is added to them, and the fit is repeated. Relative
-    to a fit with `fitted` parameters, they are too small by about this number times as much.
+    """Compute the sum of the autocovariances of a series over all lags. The degrees of freedom of this
+    estimate are also returned. Autocovariances relative to the measured mean are too small by their sum
+    divided by the number n of samples. So a first estimate of this sum divided by n is added to them, and the
+    fit is repeated. Relative to a fit with `fitted` parameters, they are too small by about this number times
+    as much.
     """
     number = series.size
     order = _order(number)
@@ -217,13 +207,12 @@ def _spectrum(series: np.ndarray, fitted: int = 1) -> tuple[float, float]:
 
 
 def _autoregression(covariances: np.ndarray) -> tuple[float, float]:
-    """Compute the spectrum at frequency 0 of an autoregressive process, S = E / A^2.
-
-    `covariances` are the autocovariances of the process. The relative variance of A is also returned: n times
-    the variance of A divided by A^2. In the recursion of Levinson and Durbin, E is the variance of the
-    prediction error, and A is 1 minus the sum of the coefficients. The covariance matrix of the coefficients
-    is E / n times the inverse covariance matrix of the values. The sum of the elements of this inverse is the
-    sum of A^2 / E over the lower orders.
+    """Compute the spectrum at frequency 0 of an autoregressive process, S = E / A^2. `covariances` are the
+    autocovariances of the process. The relative variance of A is also returned: n times the variance of A
+    divided by A^2. In the recursion of Levinson and Durbin, E is the variance of the prediction error, and A
+    is 1 minus the sum of the coefficients. The covariance matrix of the coefficients is E / n times the
+    inverse covariance matrix of the values. The sum of the elements of this inverse is the sum of A^2 / E
+    over the lower orders.
     """
     coefficients = np.zeros(0)
     unpredicted, rest, inverse = float(covariances[0]), 1.0, 0.0
@@ -254,12 +243,10 @@ class Histogram:
 
 
 def histogram_chi_square(samples: ArrayLike, cdf: Callable[[np.ndarray], Any], bins: int) -> Histogram:
-    """Compute chi-square of independent samples against a distribution with cumulative function `cdf`.
-
-    No parameter of the distribution is fitted.
-
-    The bins divide the values of cdf(samples), which are uniform on [0, 1], into equal intervals. So all bins
-    have the same probability. At least 5 samples per bin are required.
+    """Compute chi-square of independent samples against a distribution with cumulative function `cdf`. No
+    parameter of the distribution is fitted. The bins divide the values of cdf(samples), which are uniform on
+    [0, 1], into equal intervals. So all bins have the same probability. At least 5 samples per bin are
+    required.
     """
     from scipy.special import chdtrc
 

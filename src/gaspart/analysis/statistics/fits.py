@@ -16,11 +16,10 @@ from gaspart.analysis.statistics.blocks import positive_errors, positive_freedom
 
 @dataclass(frozen=True)
 class Fit:
-    """Parameters of a linear least-squares fit.
-
-    `freedoms` are the degrees of freedom of the errors of the parameters. For a correct model, `chi_square`
-    divided by `degrees_of_freedom` follows Fisher's F distribution with `degrees_of_freedom` and
-    `error_freedom`. If the caller passes no errors, the fit cannot be tested, and `p_value` is NaN.
+    """Parameters of a linear least-squares fit. `freedoms` are the degrees of freedom of the errors of the
+    parameters. For a correct model, `chi_square` divided by `degrees_of_freedom` follows Fisher's F
+    distribution with `degrees_of_freedom` and `error_freedom`. If the caller passes no errors, the fit cannot
+    be tested, and `p_value` is NaN.
     """
 
     values: np.ndarray
@@ -49,9 +48,8 @@ class Fit:
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Power law y = amplitude x^exponent.
-
-    `exponent_freedom` is the number of degrees of freedom of the exponent's error.
+    """Power law y = amplitude x^exponent. `exponent_freedom` is the number of degrees of freedom of the
+    exponent's error.
     """
 
     exponent: float
@@ -76,14 +74,11 @@ Values = ArrayLike | Estimate
 def fit_linear(
     design: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> Fit:
-    """Fit y = design @ values by least squares with weights 1 / errors^2.
-
-    The design has the shape (points, parameters).
-
-    If errors are passed, the covariance of the parameters follows from them, and chi-square tests the model.
-    Without errors, all points have equal weight, and the covariance follows from the scatter of the
-    residuals. The model is then not tested. `freedoms` are the degrees of freedom of the errors: one number
-    for all points, or one for each point. They are needed if the errors come from the scatter of a few
+    """Fit y = design @ values by least squares with weights 1 / errors^2. The design has the shape (points,
+    parameters). If errors are passed, the covariance of the parameters follows from them, and chi-square
+    tests the model. Without errors, all points have equal weight, and the covariance follows from the scatter
+    of the residuals. The model is then not tested. `freedoms` are the degrees of freedom of the errors: one
+    number for all points, or one for each point. They are needed if the errors come from the scatter of a few
     samples; see `_of_estimated_errors`. If y is an Estimate, it provides the errors and their degrees of
     freedom. Raises ValueError if there are fewer points than parameters (or equally many, without errors), or
     if the columns are dependent.
@@ -131,10 +126,9 @@ def _with_errors(y: Values, errors: ArrayLike | None, freedoms: ArrayLike) -> tu
 def _of_estimated_errors(
     shares: np.ndarray, basis: np.ndarray, covariance: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Return the covariance of a fit to points with estimated errors, and parameters of its test.
-
-    The results are the covariance, the degrees of freedom of the parameters, the factor by which chi-square
-    is too large, and the second degrees of freedom of the test.
+    """Return the covariance of a fit to points with estimated errors, and parameters of its test. The results
+    are the covariance, the degrees of freedom of the parameters, the factor by which chi-square is too large,
+    and the second degrees of freedom of the test.
 
     - shares : (parameters, points), contribution of the error of each point to each parameter.
     - basis : (points, parameters), orthonormal columns that span the columns of the weighted design.
@@ -167,9 +161,8 @@ def fit_polynomial(
     fixed: Mapping[int, float] | None = None,
     freedoms: ArrayLike = math.inf,
 ) -> Fit:
-    """Fit y = sum of values[i] x^powers[i] plus the fixed terms {power: coefficient}; see `fit_linear`.
-
-    The result does not include the uncertainty of the fixed coefficients. To estimate it, repeat the fit with
+    """Fit y = sum of values[i] x^powers[i] plus the fixed terms {power: coefficient}; see `fit_linear`. The
+    result does not include the uncertainty of the fixed coefficients. To estimate it, repeat the fit with
     shifted coefficients.
     """
     x = series_of("x", x, 1)
@@ -184,10 +177,9 @@ def fit_polynomial(
 def fit_power_law(
     x: ArrayLike, y: Values, errors: ArrayLike | None = None, freedoms: ArrayLike = math.inf
 ) -> PowerLaw:
-    """Fit y = amplitude x^exponent as a line of ln y against ln x; see `fit_linear`.
-
-    x and y must be positive; `errors` are errors of y. The logarithm has the errors errors / y, which is
-    accurate if they are below about 20 %.
+    """Fit y = amplitude x^exponent as a line of ln y against ln x; see `fit_linear`. x and y must be
+    positive; `errors` are errors of y. The logarithm has the errors errors / y, which is accurate if they are
+    below about 20 %.
     """
     x = series_of("x", x, 2)
     y, errors, freedoms = _with_errors(y, errors, freedoms)
@@ -221,10 +213,9 @@ def fit_curve(
     start: Sequence[float],
     bounds: tuple[Sequence[float], Sequence[float]] | tuple[float, float] = (-math.inf, math.inf),
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fit the parameters of function(x, *parameters) to values with known errors.
-
-    Returns the parameters and their covariance. Raises ValueError if an error is not positive and finite,
-    because scipy would then return the starting values. Raises RuntimeError if the fit does not converge.
+    """Fit the parameters of function(x, *parameters) to values with known errors. Returns the parameters and
+    their covariance. Raises ValueError if an error is not positive and finite, because scipy would then
+    return the starting values. Raises RuntimeError if the fit does not converge.
     """
     from scipy.optimize import curve_fit
 
@@ -240,9 +231,8 @@ def fit_curve(
 
 @dataclass(frozen=True)
 class Combination:
-    """Weighted mean of independent values, and a test of their scatter; see `Fit`.
-
-    Chi-square tests if the scatter of the values agrees with their errors.
+    """Weighted mean of independent values, and a test of their scatter; see `Fit`. Chi-square tests if the
+    scatter of the values agrees with their errors.
     """
 
     value: float
@@ -260,9 +250,8 @@ class Combination:
 
 
 def mean_of(values: ArrayLike) -> Estimate:
-    """Compute the mean of N independent numbers, at least two, and its standard error.
-
-    The error follows from the scatter between the numbers and has N - 1 degrees of freedom.
+    """Compute the mean of N independent numbers, at least two, and its standard error. The error follows from
+    the scatter between the numbers and has N - 1 degrees of freedom.
     """
     values = series_of("values", values, 2)
     error = float(values.std(ddof=1) / math.sqrt(values.size))
@@ -270,9 +259,8 @@ def mean_of(values: ArrayLike) -> Estimate:
 
 
 def average(estimates: Estimate | Sequence[Estimate]) -> Estimate:
-    """Average independent estimates with equal weights, and propagate their uncertainties.
-
-    The elements of an array of estimates are averaged along its first axis.
+    """Average independent estimates with equal weights, and propagate their uncertainties. The elements of an
+    array of estimates are averaged along its first axis.
     """
     return sum(estimates, Estimate(0.0)) / len(estimates)
 
@@ -284,11 +272,10 @@ too short compared with the correlation time, or the bin was occupied in too few
 
 
 def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the means of N independent samples (N, ...) over axis 0, and their standard errors.
-
-    The errors follow from the scatter between the samples. If each sample is itself a mean over several
-    items, `sizes` (N,) are the numbers of items. The result is then the mean over all items with equal
-    weights. The variance of a sample is assumed to be inversely proportional to its size.
+    """Compute the means of N independent samples (N, ...) over axis 0, and their standard errors. The errors
+    follow from the scatter between the samples. If each sample is itself a mean over several items, `sizes`
+    (N,) are the numbers of items. The result is then the mean over all items with equal weights. The variance
+    of a sample is assumed to be inversely proportional to its size.
     """
     values = np.asarray(samples)
     if sizes is None or np.ptp(sizes) == 0.0:
@@ -302,9 +289,8 @@ def means_of(samples: ArrayLike, sizes: ArrayLike | None = None) -> tuple[np.nda
 def histogram_means(
     samples: ArrayLike, sizes: ArrayLike | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute means of N histograms (N, bins), their errors, and the degrees of freedom of the errors.
-
-    A bin that is filled in n histograms has at most n - 1 degrees of freedom: few counts scatter by chance as
+    """Compute means of N histograms (N, bins), their errors, and the degrees of freedom of the errors. A bin
+    that is filled in n histograms has at most n - 1 degrees of freedom: few counts scatter by chance as
     little as many. An error with fewer than `KNOWN_FREEDOM` is NaN, and so is the error of a bin without
     scatter, unless no filled bin has any: nothing moves, and the errors of filled bins are 0.
     """
@@ -317,15 +303,14 @@ def histogram_means(
 
 
 def steady_mean(series: ArrayLike, *changes: ArrayLike) -> Estimate:
-    """Compute the steady current through a system that stores energy, from block means.
-
-    The series contains the mean currents in K blocks. Each array (K,) in `changes` is the change of a bounded
-    quantity, such as the stored energy, during each block. Energy that is stored in one block is returned in
-    another. So the means of the blocks are anticorrelated, and their scatter overestimates the error of the
-    long-time mean. Therefore the currents are regressed on the changes by least squares. The result is the
-    fitted current in a block without a change of these quantities. It differs from the mean over all blocks
-    by a bounded amount divided by the length of the run. The number of degrees of freedom is K - 1 -
-    len(changes). Raises ValueError under the conditions of `fit_linear`.
+    """Compute the steady current through a system that stores energy, from block means. The series contains
+    the mean currents in K blocks. Each array (K,) in `changes` is the change of a bounded quantity, such as
+    the stored energy, during each block. Energy that is stored in one block is returned in another. So the
+    means of the blocks are anticorrelated, and their scatter overestimates the error of the long-time mean.
+    Therefore the currents are regressed on the changes by least squares. The result is the fitted current in
+    a block without a change of these quantities. It differs from the mean over all blocks by a bounded amount
+    divided by the length of the run. The number of degrees of freedom is K - 1 - len(changes). Raises
+    ValueError under the conditions of `fit_linear`.
     """
     series = series_of("series", series, 2)
     design = [np.ones(series.size)]
@@ -354,23 +339,20 @@ def combine(values: Values, errors: ArrayLike | None = None, freedoms: ArrayLike
 
 
 def combine_estimates(estimates: Estimate | Sequence[Estimate]) -> Estimate:
-    """Average independent estimates with weights 1 / error^2; NaN for an empty list.
-
-    The estimates may be the elements of a single array estimate.
+    """Average independent estimates with weights 1 / error^2; NaN for an empty list. The estimates may be the
+    elements of a single array estimate.
     """
     stacked = estimates if isinstance(estimates, Estimate) else Estimate.stack(estimates)
     return combine(stacked).estimate if stacked else Estimate(math.nan, math.nan)
 
 
 def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int = 1000) -> Estimate:
-    """Compute function(samples), and its standard error by the bootstrap.
-
-    The samples are resampled with replacement along axis 0.
-
-    The random numbers are always the same, so identical samples give identical errors. `function` must return
-    a single number. The scatter between resampled means of n samples is smaller than the standard error by
-    the factor sqrt(1 - 1/n), so the scatter is divided by this factor. The error has n - 1 degrees of freedom
-    (Efron and Tibshirani, An introduction to the bootstrap (1993), section 5.3).
+    """Compute function(samples), and its standard error by the bootstrap. The samples are resampled with
+    replacement along axis 0. The random numbers are always the same, so identical samples give identical
+    errors. `function` must return a single number. The scatter between resampled means of n samples is
+    smaller than the standard error by the factor sqrt(1 - 1/n), so the scatter is divided by this factor. The
+    error has n - 1 degrees of freedom (Efron and Tibshirani, An introduction to the bootstrap (1993), section
+    5.3).
     """
     samples = np.asarray(samples)
     if samples.shape[0] < 2:
@@ -383,12 +365,11 @@ def bootstrap(function: Callable[..., float], samples: ArrayLike, repeats: int =
 
 
 def jackknife(function: Callable[..., Any], *samples: ArrayLike) -> tuple[Any, Any]:
-    """Compute function(means of the samples), and its standard error by the jackknife.
-
-    Each block is omitted once. The samples are arrays whose axis 0 runs over the same n independent blocks
-    (at least two). `function` receives the means of the arrays over the blocks and returns a number or an
-    array. For smooth functions the error is correct to first order and includes correlations between the
-    samples (Tukey 1958). Returns (value, error) as arrays.
+    """Compute function(means of the samples), and its standard error by the jackknife. Each block is omitted
+    once. The samples are arrays whose axis 0 runs over the same n independent blocks (at least two).
+    `function` receives the means of the arrays over the blocks and returns a number or an array. For smooth
+    functions the error is correct to first order and includes correlations between the samples (Tukey 1958).
+    Returns (value, error) as arrays.
     """
     series = [np.asarray(sample, dtype=float) for sample in samples]
     blocks = series[0].shape[0]
@@ -416,10 +397,9 @@ FLAT = 0.05
 
 @dataclass(frozen=True)
 class Optimum:
-    """Minimum of a cost: its position, the 95 % interval of the position, and its cost.
-
-    Two further properties state if the minimum lies between the points, and the interval in which the
-    relative excess of the cost over its minimum is less than FLAT.
+    """Minimum of a cost: its position, the 95 % interval of the position, and its cost. Two further
+    properties state if the minimum lies between the points, and the interval in which the relative excess of
+    the cost over its minimum is less than FLAT.
     """
 
     location: float
@@ -432,14 +412,13 @@ class Optimum:
 
 
 def optimum(x: ArrayLike, cost: ArrayLike, within: float = 3.0) -> Optimum:
-    """Find the minimum sqrt(b / c) of a cost a + b/x + c x.
-
-    As a function of x, such a cost falls steeply and rises slowly. The three terms are fitted to the points
-    near the minimum: to all points with a cost below `within` times the smallest cost, but at least to the
-    four cheapest points. The interval of the position is computed for its logarithm, by error propagation
-    from the relative scatter of the points about the curve. `interior` is True if b and c are positive and
-    the minimum lies between the points. Otherwise the points determine no minimum: the position is the x of
-    the cheapest point, and the intervals extend from 0 to inf.
+    """Find the minimum sqrt(b / c) of a cost a + b/x + c x. As a function of x, such a cost falls steeply and
+    rises slowly. The three terms are fitted to the points near the minimum: to all points with a cost below
+    `within` times the smallest cost, but at least to the four cheapest points. The interval of the position
+    is computed for its logarithm, by error propagation from the relative scatter of the points about the
+    curve. `interior` is True if b and c are positive and the minimum lies between the points. Otherwise the
+    points determine no minimum: the position is the x of the cheapest point, and the intervals extend from 0
+    to inf.
     """
     x = series_of("x", x, 4)
     cost = series_of("cost", cost, 4)

@@ -22,15 +22,15 @@ from gaspart.kernels.dsmc.model import PADDED, Faces, Grid, Law, Particles, Work
 from gaspart.kernels.model import ContactLaw, Open, flight_dtype
 from gaspart.kernels.physics.exact_sum import WIDTH
 from gaspart.scene.accessible import Accessible
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 from gaspart.theory.discretisation import BEND, HIGHEST, SLOPE
 from gaspart.theory.rates import accessible
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 _COLLISION_DRAWS = 5  # stream number of these random numbers, after those of thermal walls and kicks
@@ -45,9 +45,8 @@ def empty_particles(state: State) -> Particles:
 
 
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
-    """Return a grid with a number of cells along each axis, over the accessible volume.
-
-    With open faces, the grid has an additional counter for slots without a particle.
+    """Return a grid with a number of cells along each axis, over the accessible volume. With open faces, the
+    grid has an additional counter for slots without a particle.
     """
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
@@ -67,10 +66,9 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
 
 
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of particles, and the kind number (N,) of each particle.
-
-    The array of kinds has the shape (K, 3); each row contains radius, mass and moment of inertia. If all
-    particles are identical, this array has the shape (0,).
+    """Return the kinds of particles, and the kind number (N,) of each particle. The array of kinds has the
+    shape (K, 3); each row contains radius, mass and moment of inertia. If all particles are identical, this
+    array has the shape (0,).
     """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
@@ -82,7 +80,7 @@ def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def workspace_for(
-    engine: DSMC, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
+    engine: DsmcSettings, scene: Scene, state: State, step: float, seed: int | tuple[int, ...]
 ) -> Workspace:
     """Return the workspace of a step, with all counters at zero."""
     kinds, which = kinds_of(state)
@@ -168,10 +166,9 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 
 
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
-    """Return the axis along which slabs divide the cells, and the first cell of each slab.
-
-    The array also contains the end of the last slab. The result is an even number of slabs, each at least two
-    `reach` wide, or a single slab if this is impossible.
+    """Return the axis along which slabs divide the cells, and the first cell of each slab. The array also
+    contains the end of the last slab. The result is an even number of slabs, each at least two `reach` wide,
+    or a single slab if this is impossible.
     """
     numbers = 2 * (per_side // (4 * reach))
     axis = int(numbers.argmax())
@@ -180,9 +177,8 @@ def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
-    """Return the arrays of the Enskog model for a state with several kinds of particles.
-
-    Raises SceneError for a scene that the model does not support.
+    """Return the arrays of the Enskog model for a state with several kinds of particles. Raises SceneError
+    for a scene that the model does not support.
     """
     d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
     if kinds > _MOST_DENSE_KINDS:

@@ -33,7 +33,7 @@ from gaspart.theory.discretisation import CELL_VISCOSITY, DENSE_VISCOSITY, STEP_
 from gaspart.theory.rates import MEAN_SQUARE, Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 FULL = 64.0
 """Number of particles per cell if the width of cells has no effect."""
@@ -63,10 +63,9 @@ _FINER = 2.0**-0.125
 
 
 def varying_axes(scene: Scene) -> tuple[bool, ...]:
-    """Return flags (d,) of the axes along which the gas may vary.
-
-    Between walls it varies across the walls alone, if no unstable layers, clusters or initial regions can
-    change this. Without walls all axes count, because fluctuations vary along all of them.
+    """Return flags (d,) of the axes along which the gas may vary. Between walls it varies across the walls
+    alone, if no unstable layers, clusters or initial regions can change this. Without walls all axes count,
+    because fluctuations vary along all of them.
     """
     walled = tuple(not around for around in scene.container.periodic)
     rolls = _falls(scene) and len(scene.face_temperatures) > 1
@@ -149,10 +148,9 @@ class Medium:
 
     @cached_property
     def resolves(self) -> bool:
-        """True if results depend on the width of cells.
-
-        Without flows they do so only in elastic gases of the Boltzmann model, whose stress includes transfers
-        between the partners in a cell. The Enskog model tallies transfers over a diameter.
+        """True if results depend on the width of cells. Without flows they do so only in elastic gases of the
+        Boltzmann model, whose stress includes transfers between the partners in a cell. The Enskog model
+        tallies transfers over a diameter.
         """
         return flows(self.scene) or not (self.dense or _dissipates(self.scene))
 
@@ -191,10 +189,9 @@ class Medium:
         return STRESS_TRANSFER[d] / d**2 * mass * self.gas_rates.frequency * float((widths**2).sum())
 
     def recommended(self, step: float) -> tuple[int, ...]:
-        """Return the recommended number of cells along each axis (d,).
-
-        Across walls between which the gas varies there are `LAYERS` cells, if there are enough particles. The
-        remaining cells are divided among the other axes.
+        """Return the recommended number of cells along each axis (d,). Across walls between which the gas
+        varies there are `LAYERS` cells, if there are enough particles. The remaining cells are divided among
+        the other axes.
         """
         fit, axis = self._fitting(step, {}), falling_axis(self.scene)
         if axis is None and flows(self.scene) and sum(self.varying) == 1:
@@ -224,10 +221,9 @@ class Medium:
 
 
 def _collisions_together(widths: np.ndarray, step: float, dimension: int, gas_rates: Rates) -> float:
-    """Return the number of collisions of a particle while a pair that has collided stays together.
-
-    The pair leaves its cell, or another collision of one of them ends the time. The sum over whole steps
-    replaces the integral over an exponential decay.
+    """Return the number of collisions of a particle while a pair that has collided stays together. The pair
+    leaves its cell, or another collision of one of them ends the time. The sum over whole steps replaces the
+    integral over an exponential decay.
     """
     across = math.sqrt(2.0) * {2: 2.0 / math.pi, 3: 0.5}[dimension] * gas_rates.path
     left = across * float((1.0 / widths).sum()) / _STAY[len(widths)] + 2.0
@@ -254,7 +250,9 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
     return (upper - lower) / np.array(cells)
 
 
-def medium_for(engine: DSMC, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0) -> Medium:
+def medium_for(
+    engine: DsmcSettings, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0
+) -> Medium:
     """Return the gas of a scene for an engine.
 
     gas_rates : rates at the mean density; default: at the start
@@ -264,7 +262,7 @@ def medium_for(engine: DSMC, scene: Scene, gas_rates: Rates | None = None, crowd
     return Medium(engine.model, scene, found.at_density(crowding), crowding * usual_count(scene))
 
 
-def cells_for(engine: DSMC, medium: Medium, step: float, crowding: float = 1.0) -> tuple[int, ...]:
+def cells_for(engine: DsmcSettings, medium: Medium, step: float, crowding: float = 1.0) -> tuple[int, ...]:
     """Return the prescribed or recommended number of cells along each axis (d,)."""
     prescribed, d = engine.cells_per_side, medium.scene.dimension
     if prescribed is None or (engine.adapts_cells and crowding > 1.0):
@@ -279,11 +277,10 @@ def cells_for(engine: DSMC, medium: Medium, step: float, crowding: float = 1.0) 
 
 
 def remarks(
-    engine: DSMC, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
+    engine: DsmcSettings, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
 ) -> dict[str, str]:
-    """Return a remark, by setting, about each setting that causes a notable error.
-
-    A remark recommends other values if their error is much smaller.
+    """Return a remark, by setting, about each setting that causes a notable error. A remark recommends other
+    values if their error is much smaller.
 
     when : words that describe the time
     """
@@ -315,7 +312,7 @@ def remarks(
     return texts
 
 
-def neglected(engine: DSMC, scene: Scene) -> str | None:
+def neglected(engine: DsmcSettings, scene: Scene) -> str | None:
     """Return a remark about the excluded volume if the model neglects a notable part of the collisions."""
     if engine.model == "enskog" or (contact := _contact(scene)) < 1.0 / (1.0 - NOTABLE):
         return None

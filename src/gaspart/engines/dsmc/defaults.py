@@ -15,7 +15,7 @@ from gaspart.state.state import State
 from gaspart.theory.rates import Rates, highest_speed, rates
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
     from gaspart.kernels.dsmc.model import Pace
 
 
@@ -125,10 +125,8 @@ def may_speed_up(scene: Scene) -> bool:
 
 
 def is_hotter(state: State, gas_rates: Rates) -> bool:
-    """Return True if the initial state is so fast that steps must be adapted.
-
-    The speeds relative to the mean velocity of `state` are compared with the speeds in the scene's own
-    initial state.
+    """Return True if the initial state is so fast that steps must be adapted. The speeds relative to the mean
+    velocity of `state` are compared with the speeds in the scene's own initial state.
     """
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
@@ -138,9 +136,8 @@ def is_hotter(state: State, gas_rates: Rates) -> bool:
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest mean speed for each level of a step, shape (levels,).
-
-    If the step is not divided, there is only one level.
+    """Return the lowest and the highest mean speed for each level of a step, shape (levels,). If the step is
+    not divided, there is only one level.
     """
     if not divided:
         return np.zeros(1), np.array([reach.speed(reach.most, step)])
@@ -170,10 +167,8 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 
 
 def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
-    """Raise SceneError for a step in which particles fly too far.
-
-    A step is rejected if, during the step, a particle would collide more than `MOST` times, or fly from wall
-    to wall more than `MOST` times.
+    """Raise SceneError for a step in which particles fly too far. A step is rejected if, during the step, a
+    particle would collide more than `MOST` times, or fly from wall to wall more than `MOST` times.
     """
     if reach.way(gas_rates.speed, step) > reach.most:
         fit = reach.longest(gas_rates.speed, reach.most)
@@ -189,10 +184,9 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
     return SimulationError(f"at time {time:g} time_step = {step:g} {_TOO_LONG}: {fit:.2g} would do")
 
 
-def step_for(engine: DSMC, scene: Scene, gas_rates: Rates) -> float:
-    """Return the length of a step: the engine's setting or the recommended length.
-
-    Raises SceneError if nothing moves.
+def step_for(engine: DsmcSettings, scene: Scene, gas_rates: Rates) -> float:
+    """Return the length of a step: the engine's setting or the recommended length. Raises SceneError if
+    nothing moves.
     """
     if engine.time_step is not None:
         return engine.time_step

@@ -25,13 +25,13 @@ from gaspart.kernels.dsmc.boltzmann import Stress
 from gaspart.kernels.dsmc.model import kick_all
 from gaspart.kernels.model import Space
 from gaspart.kernels.physics.exact_sum import WIDTH, exact_parts, sum_over_threads
-from gaspart.scene.face_checks import mean_count, refuse_open
+from gaspart.scene.boundaries import mean_count, refuse_open
 from gaspart.scene.scene import Scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 # Scenes that the DSMC engine supports.
@@ -97,7 +97,6 @@ class StressPart(TallyPart):
         return exact_parts(self.kernel.sums)[:, 0]
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums by the names of their fields in `Tally`."""
         return tallied_fluxes(self.read(clock), self.kernel.drift)
 
 
@@ -111,7 +110,6 @@ class WallShearPart(Part):
         super().__init__({}, sums={"shear": shear})
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum by the name of its field in `Tally`."""
         return {"wall_shear": exact_parts(self.sums["shear"])[..., 0]}
 
 
@@ -134,9 +132,8 @@ _WHOLE = 2**FINEST
 
 
 class DsmcDynamics(SteppedDynamics):
-    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps.
-
-    A step may be divided into parts, and cells may become narrower: see `defaults` and `resolution`.
+    """Dynamics of a scene under the DSMC engine. Its time is an integer number of steps. A step may be
+    divided into parts, and cells may become narrower: see `defaults` and `resolution`.
 
     time_step : length of a step, prescribed or chosen by the engine
     """
@@ -145,7 +142,7 @@ class DsmcDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: DSMC,
+        engine: DsmcSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],
@@ -228,7 +225,6 @@ class DsmcDynamics(SteppedDynamics):
         return self._steps + self._place_in_step / _WHOLE
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError if the particles become too fast for any step."""
         while self._steps < step:
             epoch = self._steps - self._steps % EPOCH + EPOCH
             self._make(min(step, epoch) if self._resolution.crowds else step)
@@ -264,7 +260,6 @@ class DsmcDynamics(SteppedDynamics):
         return loop.run_steps(self._particles, now.grid, context, number, self._threads, options)
 
     def reset_tally(self) -> None:
-        """Reset all counters."""
         super().reset_tally()
         self._clock_since = int(self._workspace.clock[0])
 
@@ -287,7 +282,6 @@ class DsmcDynamics(SteppedDynamics):
         return sum_over_threads(sums) if sums.shape[-1] == WIDTH else super()._sum_threads(sums)
 
     def _counts(self) -> dict[str, Any]:
-        """Return the counts, including the number of divided steps."""
         workspace, counts = self._workspace, self._workspace.counts.sum(axis=0)
         return {
             "collisions": int(counts[layout.COLLISIONS]),
@@ -303,7 +297,6 @@ class DsmcDynamics(SteppedDynamics):
         return {**super()._arrays(), "clock": self._workspace.clock}
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, with the density level and the dense gas's fields."""
         dense = self._resolution.dense
         fields = {"fields": dense.fields} if dense else {}
         return {**super()._checkpoint_data(), "crowded": self._resolution.crowded, **fields}
@@ -322,7 +315,6 @@ class DsmcDynamics(SteppedDynamics):
         return required
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Put the particles into cells for the density level of the checkpoint."""
         resolution, crowded = self._resolution, int(checkpoint["crowded"])
         if crowded != resolution.crowded:
             resolution.set(crowded)

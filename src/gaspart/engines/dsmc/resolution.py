@@ -29,7 +29,7 @@ from gaspart.state.state import State
 from gaspart.theory.rates import Rates, accessible, rates, usual_count
 
 if TYPE_CHECKING:
-    from gaspart.engines.dsmc.settings import DSMC
+    from gaspart.engines.dsmc.settings import DsmcSettings
 
 
 # Density around the particles of a gas, relative to the mean density; the cells must resolve it.
@@ -63,10 +63,8 @@ def may_crowd(scene: Scene) -> bool:
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
-    """Return the relative density around particles at positions (N, d).
-
-    This density is computed from the numbers of pairs in the cells. In a uniform gas with the usual number of
-    particles it is 1.
+    """Return the relative density around particles at positions (N, d). This density is computed from the
+    numbers of pairs in the cells. In a uniform gas with the usual number of particles it is 1.
     """
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
@@ -100,13 +98,12 @@ def varies_along(state: State, axis: int, length: float) -> bool:
 
 
 class Resolution:
-    """Present cells and step lengths of a run.
-
-    The constructor raises SceneError for settings that do not fit the scene.
+    """Present cells and step lengths of a run. The constructor raises SceneError for settings that do not fit
+    the scene.
     """
 
     def __init__(
-        self, engine: DSMC, scene: Scene, state: State, kinds: int, opened: Open | None = None
+        self, engine: DsmcSettings, scene: Scene, state: State, kinds: int, opened: Open | None = None
     ) -> None:
         self._engine, self._scene, self._state, self._kinds = engine, scene, state, kinds
         self._present = opened.present if opened else None
@@ -164,11 +161,9 @@ class Resolution:
             self._warn(self._medium(crowded), f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, position: int, time: float) -> int:
-        """Return the level of division for the next part of a step.
-
-        The speeds of the particles determine the level. If the completed fraction of the step is not a
-        multiple of a part at this level, a higher level is returned. Raises SimulationError if the particles
-        are too fast for every level.
+        """Return the level of division for the next part of a step. The speeds of the particles determine the
+        level. If the completed fraction of the step is not a multiple of a part at this level, a higher level
+        is returned. Raises SimulationError if the particles are too fast for every level.
 
         position : completed fraction of the step, in units of the shortest part
         """

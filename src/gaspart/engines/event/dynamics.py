@@ -144,9 +144,8 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Move particles to a periodic face if they are beyond it only because of rounding.
-
-    These particles reach the face exactly at the present time.
+    """Move particles to a periodic face if they are beyond it only because of rounding. These particles reach
+    the face exactly at the present time.
     """
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
@@ -161,10 +160,8 @@ def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
 
 
 class EventDynamics(Dynamics):
-    """Running scene under the event-driven engine.
-
-    Each particle has a clock. A run is divided into epochs, and times on the clocks are relative to the start
-    of the current epoch, so that they keep their precision.
+    """Running scene under the event-driven engine. Each particle has a clock. A run is divided into epochs,
+    and times on the clocks are relative to the start of the current epoch, so that they keep their precision.
     """
 
     numbers = ("start", "epoch", "base", "quiet", "clock", "since")
@@ -208,7 +205,6 @@ class EventDynamics(Dynamics):
         self._predict()
 
     def reset_tally(self) -> None:
-        """Reset all counters to zero."""
         self._tally.reset(self.time, self._clock)
 
     def _make_lists(self) -> None:
@@ -230,7 +226,6 @@ class EventDynamics(Dynamics):
 
     @property
     def time(self) -> float:
-        """Present simulation time."""
         return self._start + self._clock
 
     def advance(
@@ -240,12 +235,10 @@ class EventDynamics(Dynamics):
         log: EventLog | None = None,
         max_work: int | None = None,
     ) -> None:
-        """Process events up to time `until`, at most `max_events` of them.
-
-        Events are collisions, wall hits, and attempted entries through open faces. Raises SimulationError,
-        with the state saved, in two cases. The first is a collapse: infinitely many collisions in a finite
-        time. The second is a run without an end time in which no event occurs during a thousand flights
-        through the container.
+        """Process events up to time `until`, at most `max_events` of them. Events are collisions, wall hits,
+        and attempted entries through open faces. Raises SimulationError, with the state saved, in two cases.
+        The first is a collapse: infinitely many collisions in a finite time. The second is a run without an
+        end time in which no event occurs during a thousand flights through the container.
 
         max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
             of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
@@ -311,18 +304,16 @@ class EventDynamics(Dynamics):
         self._clock = until - self._start
 
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
-        """Run the kernel, and return the reason why it stopped, its counts, and the last time.
-
-        The counts are the numbers of processed events and crossings. The time is the time of the last event.
+        """Run the kernel, and return the reason why it stopped, its counts, and the last time. The counts are
+        the numbers of processed events and crossings. The time is the time of the last event.
         """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self, endless: bool) -> float:
-        """Restart the clocks from zero and predict all events again.
-
-        Returns the length of the previous epoch.
+        """Restart the clocks from zero and predict all events again. Returns the length of the previous
+        epoch.
 
         endless : True if only a number of events ends the run
         """
@@ -354,10 +345,9 @@ class EventDynamics(Dynamics):
         return self._epochs.base(self._flights["velocity"], stored, present)
 
     def _renew_epoch(self) -> float:
-        """Start shorter epochs if the particles have become much faster.
-
-        All particles must be at the present time. The new lengths are needed because an epoch of a gas at
-        rest has no end. Returns the amount by which the start of the epoch has moved.
+        """Start shorter epochs if the particles have become much faster. All particles must be at the present
+        time. The new lengths are needed because an epoch of a gas at rest has no end. Returns the amount by
+        which the start of the epoch has moved.
         """
         base, time = self._base_from(self._base), self.time
         if base >= self._base:
@@ -382,17 +372,14 @@ class EventDynamics(Dynamics):
 
     @property
     def tally(self) -> Tally:
-        """Counters and sums since the last `reset_tally`."""
         return self._tally.read(self.time, self._clock)
 
     @property
     def dissipated(self) -> float:
-        """Energy removed by contacts and thermal walls since time 0, minus the energy added by kicks."""
         return self._tally.dissipated
 
     @property
     def exchanged(self) -> float:
-        """Sum of the absolute energies that contacts and each face have exchanged since time 0."""
         return self._tally.exchanged
 
     def _present(self) -> np.ndarray:
@@ -404,7 +391,6 @@ class EventDynamics(Dynamics):
 
     @property
     def state(self) -> State:
-        """State of all particles at the present time."""
         flights = self._present()
         state = replace(
             self._reference,
@@ -427,7 +413,6 @@ class EventDynamics(Dynamics):
         self._tally.since = time
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Return the arrays, by name, that the kernels change and that cannot be recomputed."""
         arrays = {**self._particles._asdict(), **self._tally.changing, **super()._arrays()}
         arrays |= {"event_count": self._event_count, "lost": self._tally.lost}
         if self._boxes.lists:
@@ -436,7 +421,6 @@ class EventDynamics(Dynamics):
 
     def _checkpoint_data(self) -> dict[str, Any]:
         """Return the data of a checkpoint: particles at their own times, predictions, counters, search.
-
         Neighbour lists are not stored, but only their capacity `room`. If the capacity does not suffice after
         the restart, all lists are made again; the counters of work then differ.
         """
@@ -454,9 +438,8 @@ class EventDynamics(Dynamics):
         )
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the arrays of the search.
-
-        If the checkpoint is from a different search, the centres of neighbour lists are not required.
+        """Return the arrays required from a checkpoint, except the arrays of the search. If the checkpoint is
+        from a different search, the centres of neighbour lists are not required.
         """
         spared = {
             *self._search_settings(),

@@ -26,9 +26,9 @@ from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event.pair_contact import Monitors
 from gaspart.kernels.obstacles import moving
 from gaspart.kernels.physics import flight
-from gaspart.scene.faces import FACES
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.state.state import State
 
 types: Any = load_numba().core.types
@@ -58,9 +58,8 @@ def check_scene(scene: Scene) -> None:
 
 
 class _Arrays(EventDynamics):
-    """Arrays of the kernels for a scene, without predictions of events, which a page makes itself.
-
-    `_numbers` and `_image` read them.
+    """Arrays of the kernels for a scene, without predictions of events, which a page makes itself. `_numbers`
+    and `_image` read them.
     """
 
     def __init__(self, scene: Scene, state: State, seed: int) -> None:
@@ -206,11 +205,9 @@ def _image(arrays: _Arrays, epoch: float) -> Image:
 
 
 def _numbers(arrays: _Arrays) -> np.ndarray:
-    """Return numbers of the scene that a page needs, as an array of the image.
-
-    The first are the squares of the speeds that a particle gains: by gravity, by a piston, by interior walls
-    and sliding faces, and by each face. The others are 1 if particles are rough, and if the speed of the
-    piston is prescribed.
+    """Return numbers of the scene that a page needs, as an array of the image. The first are the squares of
+    the speeds that a particle gains: by gravity, by a piston, by interior walls and sliding faces, and by
+    each face. The others are 1 if particles are rough, and if the speed of the piston is prescribed.
     """
     scene, numbers = arrays._scene, np.zeros(5 + 2 * arrays._scene.dimension)
     lightest = float(arrays._reference.masses.min(initial=np.inf))

@@ -8,7 +8,7 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.kernels.model import NUMBER_BITS
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.boxes import make_boxes
 
 if TYPE_CHECKING:
@@ -25,10 +25,8 @@ _SMALLEST, _LARGEST = 1e-12, 1e12  # radii whose squares are float32 numbers
 
 
 def distances(scene: Scene) -> tuple[float, float]:
-    """Return the displacement of a particle at which its list is renewed, and the list's reach.
-
-    The reach includes a margin for the rounding of list centres to single precision, so that no contact is
-    missed.
+    """Return the displacement of a particle at which its list is renewed, and the list's reach. The reach
+    includes a margin for the rounding of list centres to single precision, so that no contact is missed.
     """
     d, diameter, lengths = scene.dimension, 2.0 * scene.largest_radius, scene.container.lengths
     rounding = 16.0 * float(np.finfo(np.float32).eps) * max(lengths)
@@ -64,10 +62,9 @@ def obstacle_to_lists(scene: Scene) -> str | None:
 
 
 def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
-    """Return the search for a scene; replace "automatic" by "boxes" or "lists".
-
-    Raises SceneError if lists are requested but a feature of the scene does not support them, and if there
-    are more particles than a search can number.
+    """Return the search for a scene; replace "automatic" by "boxes" or "lists". Raises SceneError if lists
+    are requested but a feature of the scene does not support them, and if there are more particles than a
+    search can number.
     """
     if scene.capacity > 1 << NUMBER_BITS:
         raise SceneError(

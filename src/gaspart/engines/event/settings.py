@@ -97,12 +97,10 @@ class EventDriven(Engine):
         return chosen_search(scene, self.search, self.boxes_per_side is not None)
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the search; "direct" is the search with boxes in a single box."""
         search = self._search(scene)
         return "boxes" if search == "direct" else search
 
     def for_small_scene(self, scene: Scene) -> EventDriven:
-        """Return the engine with the search of the full scene, and a single box if it has boxes."""
         boxes = None if self.boxes_per_side is None else 1
         return EventDriven(search=self._search(scene), boxes_per_side=boxes)
 
@@ -113,7 +111,6 @@ class EventDriven(Engine):
         seed: int | tuple[int, ...] = 0,
         tallies: Sequence[OptionalTally] = (),
     ) -> EventDynamics:
-        """Prepare the engine; raises SceneError if the scene does not support the search."""
         from gaspart.engines.event.dynamics import EventDynamics
 
         return EventDynamics(scene, state, seed, self.search, self.boxes_per_side, tallies)

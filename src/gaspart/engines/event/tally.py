@@ -118,12 +118,10 @@ QUIET = 64
 
 
 class Epochs:
-    """Epoch lengths of a scene.
-
-    The length follows from a time of flight, over many of the smallest diameters. If particles are so small
-    that a flight through the container would take many epochs, it is the time of this flight, in which clocks
-    are as precise as positions. The speed is the rms speed plus the largest gain of speed due to gravity and
-    faces.
+    """Epoch lengths of a scene. The length follows from a time of flight, over many of the smallest
+    diameters. If particles are so small that a flight through the container would take many epochs, it is the
+    time of this flight, in which clocks are as precise as positions. The speed is the rms speed plus the
+    largest gain of speed due to gravity and faces.
 
     masses : (N,), masses, infinite for fixed particles
     gained : square of the largest speed that the scene can give a particle
@@ -143,10 +141,9 @@ class Epochs:
         return math.sqrt(square + self._gained)
 
     def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
-        """Return the rms speed after equipartition of the energy.
-
-        The present rms speed would be too low: in a gas at rest, a few heavy or spinning particles can
-        transfer their energy to all others within an epoch.
+        """Return the rms speed after equipartition of the energy. The present rms speed would be too low: in
+        a gas at rest, a few heavy or spinning particles can transfer their energy to all others within an
+        epoch.
 
         stored : energy of the particles in other forms than translation
         """
@@ -157,17 +154,14 @@ class Epochs:
         return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
 
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
-        """Return the epoch length for velocities (N, d) and a `stored` energy.
-
-        The stored energy is added to the translational energy. The length `present` is retained under the
-        condition in `length`.
+        """Return the epoch length for velocities (N, d) and a `stored` energy. The stored energy is added to
+        the translational energy. The length `present` is retained under the condition in `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
 
     def flights(self, velocities: np.ndarray, length: float) -> float:
         """Return the number of flights through the container in an epoch at the mean relative speed.
-
         Velocities (N, d) are relative to the motion of the whole gas, because particles that move together do
         not collide. The result is 0 if the relative velocities are due to rounding only.
         """
@@ -175,20 +169,17 @@ class Epochs:
         return relative * length / self._across if relative > _RESOLVED * self.speed(velocities) else 0.0
 
     def length(self, speed: float, present: float = 0.0) -> float:
-        """Return the time after which clocks restart from zero.
-
-        The length is a power of two, so that results scale exactly with the units. The length `present` is
-        retained until speeds have changed by a factor of 2^10. In a cooling gas epochs become longer, because
-        each epoch has the same cost.
+        """Return the time after which clocks restart from zero. The length is a power of two, so that results
+        scale exactly with the units. The length `present` is retained until speeds have changed by a factor
+        of 2^10. In a cooling gas epochs become longer, because each epoch has the same cost.
         """
         length = _power_of_two(self._path / speed) if speed > 0.0 else _AT_REST
         return present if present / _OTHER < length < present * _OTHER else length
 
     def quiet(self, speed: float, length: float, number: int) -> float:
-        """Return the epoch length after a `number` of epochs without an event.
-
-        The length is twice the previous length, but at most a time of flight through the container. Up to
-        this length the clocks are as precise as the positions.
+        """Return the epoch length after a `number` of epochs without an event. The length is twice the
+        previous length, but at most a time of flight through the container. Up to this length the clocks are
+        as precise as the positions.
         """
         most = _power_of_two(self._across / speed) if speed > 0.0 else length
         doublings = min(max(number - QUIET, 0), max(0, math.frexp(most)[1] - math.frexp(length)[1]))
@@ -223,9 +214,8 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 
 
 def check_progress(time: float, spent: float, epoch: float) -> None:
-    """Raise SimulationError if `MANY` events span less time than the clocks can resolve.
-
-    The order of such events would depend only on rounding.
+    """Raise SimulationError if `MANY` events span less time than the clocks can resolve. The order of such
+    events would depend only on rounding.
 
     time : present time
     spent : duration of these events

@@ -16,9 +16,10 @@ from gaspart.kernels.obstacles.face import RULES
 from gaspart.kernels.obstacles.moving import advance_piston
 from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
-from gaspart.scene.face_checks import attempt_rate
-from gaspart.scene.faces import FACES, Open, Vibrating
+from gaspart.scene.boundaries import attempt_rate
+from gaspart.scene.faces import Open, Vibrating
 from gaspart.scene.scene import Scene
+from gaspart.scene.surfaces import FACES
 from gaspart.state.initial import places_in_wells, well_energies, wells_of
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -32,10 +33,8 @@ _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "sp
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state whose arrays have an entry for every possible particle number.
-
-    Entries of unused numbers have the position NaN and the velocity 0. Without open faces the state is
-    returned unchanged.
+    """Return a state whose arrays have an entry for every possible particle number. Entries of unused numbers
+    have the position NaN and the velocity 0. Without open faces the state is returned unchanged.
     """
     free = scene.capacity - state.count
     if free == 0:
@@ -82,10 +81,9 @@ def crowded_error(time: float, most: int) -> SimulationError:
 
 
 class OpenPart(Part):
-    """Open faces of a scene.
-
-    The arrays contain the particles in the container, the number of entries since the counters were reset,
-    and the number and the time of the next attempted entry. This time is on the clocks of the epoch.
+    """Open faces of a scene. The arrays contain the particles in the container, the number of entries since
+    the counters were reset, and the number and the time of the next attempted entry. This time is on the
+    clocks of the epoch.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -97,7 +95,6 @@ class OpenPart(Part):
         super().__init__(arrays, times=times)
 
     def set_clock(self, clock: float) -> None:
-        """Schedule the first attempted entry."""
         if self._reservoirs:
             schedule_first(self._reservoirs, clock)
 
@@ -108,17 +105,14 @@ class OpenPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Keep only the particles in the container, with their numbers."""
         state.numbers = np.flatnonzero(self._inside.present)
         for key in _ARRAYS:
             setattr(state, key, getattr(state, key)[state.numbers])
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         self._inside.entries[:] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the numbers of particles that entered, by the name of their field in `Tally`."""
         return {"entries": np.pad(self._inside.entries, (0, len(self._scene.walls)))}
 
 
@@ -142,10 +136,8 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 
 
 class PistonPart(Part):
-    """Piston of a scene.
-
-    A hit on a piston can add at most twice the piston's speed to the speed of a particle. The piston's speed
-    is prescribed or results from the external pressure.
+    """Piston of a scene. A hit on a piston can add at most twice the piston's speed to the speed of a
+    particle. The piston's speed is prescribed or results from the external pressure.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -156,7 +148,6 @@ class PistonPart(Part):
         self.gained = 4.0 * (fallen if face.speed is None else face.speed**2)
 
     def set_clock(self, clock: float) -> None:
-        """Set the time to which the stored position and velocity apply."""
         self._piston.motion[kernels.PISTON_CLOCK] = clock
 
     def begin_epoch(self, length: float, start: float, model: kernels.Model) -> kernels.Model:
@@ -165,12 +156,10 @@ class PistonPart(Part):
         return model
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move the piston to the end of the epoch, which becomes time 0 of its clock."""
         advance_piston(self._piston.motion, self._piston.push, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the piston's position along its axis and its velocity into the state."""
         piston, motion = self._piston, self._piston.motion.copy()
         advance_piston(motion, piston.push, clock)
         position, velocity = motion[kernels.PISTON_PLACE], motion[kernels.PISTON_VELOCITY]
@@ -211,9 +200,8 @@ def motion_of(scene: Scene) -> Motion | None:
 
 
 class VibratingPart(Part):
-    """Faces with a prescribed vibration.
-
-    A hit on such a face adds at most twice the speed of the face to the speed of a particle.
+    """Faces with a prescribed vibration. A hit on such a face adds at most twice the speed of the face to the
+    speed of a particle.
     """
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
@@ -222,9 +210,8 @@ class VibratingPart(Part):
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the oscillation at time 0 of the clocks.
-
-        The phase is computed as the remainder of a division, which is exact, so that it does not drift.
+        """Continue the oscillation at time 0 of the clocks. The phase is computed as the remainder of a
+        division, which is exact, so that it does not drift.
         """
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
@@ -245,9 +232,8 @@ WALL_DRAWS = 2
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds (2d,) and levels (2d,) of the faces for the kernels.
-
-    The level is the temperature of a thermal face, or the momentum of a sticky face.
+    """Return the kinds (2d,) and levels (2d,) of the faces for the kernels. The level is the temperature of a
+    thermal face, or the momentum of a sticky face.
     """
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
@@ -290,9 +276,8 @@ def has_special_faces(scene: Scene) -> bool:
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
-    """Return the special faces as the kernels' `Faces`.
-
-    Masses and energies are in the unit that `unit_mass` defines.
+    """Return the special faces as the kernels' `Faces`. Masses and energies are in the unit that `unit_mass`
+    defines.
     """
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
@@ -317,9 +302,8 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 
 
 def face_energy(scene: Scene) -> float:
-    """Return an upper estimate of the energy that a face or wall gives to a particle.
-
-    The estimate is the largest energy that a particle gains from a thermal face, a thermal wall or a well.
+    """Return an upper estimate of the energy that a face or wall gives to a particle. The estimate is the
+    largest energy that a particle gains from a thermal face, a thermal wall or a well.
     """
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
@@ -329,10 +313,9 @@ def face_energy(scene: Scene) -> float:
 
 
 class FacesPart(Part):
-    """Special faces of a scene; masses are in units of `unit_mass`.
-
-    The arrays contain which particles are in a well or stuck to a face, their energies, the numbers of random
-    draws, and the tangential momentum given to faces.
+    """Special faces of a scene; masses are in units of `unit_mass`. The arrays contain which particles are in
+    a well or stuck to a face, their energies, the numbers of random draws, and the tangential momentum given
+    to faces.
 
     lightest : mass of the lightest particle
     """
@@ -346,22 +329,18 @@ class FacesPart(Part):
 
     @property
     def stored(self) -> float:
-        """Energy of particles that are stuck to a face."""
         return float(self.arrays["held"].sum()) * self._unit_mass
 
     def write(self, state: State, clock: float) -> None:
-        """Write the energies in wells, and add the energies of particles stuck to a face."""
         state.well_energies = well_energies(self._scene, self.arrays["place"])
         if state.vibrations is not None:
             state.vibrations += self.arrays["held"].sum(axis=1) * self._unit_mass
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         if self._shear is not None:
             self._shear[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the tangential momentum given to faces, by the name of its field in `Tally`."""
         if self._shear is None:
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass

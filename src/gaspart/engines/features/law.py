@@ -24,9 +24,8 @@ _BISECTIONS = 100  # until adjacent floating-point numbers enclose the damping o
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """Return the collision law for the kernels; None for elastic, smooth collisions.
-
-    If particles are fixed, a law is always returned.
+    """Return the collision law for the kernels; None for elastic, smooth collisions. If particles are fixed,
+    a law is always returned.
     """
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
@@ -45,10 +44,9 @@ def contact_law(scene: Scene, state: State) -> ContactLaw | None:
 
 
 def _viscous(scene: Scene) -> float | None:
-    """Return the damping constant of viscoelastic particles, or None for a constant restitution.
-
-    The constant follows from the coefficient of restitution for two particles of the first species. If there
-    are no species, it follows from the coefficient for two copies of the first particle.
+    """Return the damping constant of viscoelastic particles, or None for a constant restitution. The constant
+    follows from the coefficient of restitution for two particles of the first species. If there are no
+    species, it follows from the coefficient for two copies of the first particle.
     """
     rule = scene.restitution
     if rule is None or rule.reference_speed is None:
@@ -76,7 +74,6 @@ class LawPart(Part):
 
     @property
     def stored(self) -> float:
-        """Total energy of spins and of vibrations."""
         squares = (self.arrays["spins"] ** 2).sum(axis=1)
         turning = squares > 0.0  # excludes smooth particles, whose moment of inertia may be infinite
         spins = 0.5 * float((squares[turning] / self._inverse_inertia[turning]).sum())
@@ -84,7 +81,6 @@ class LawPart(Part):
         return spins + (0.0 if vibrations is None else float(np.maximum(vibrations, 0.0).sum()))
 
     def write(self, state: State, clock: float) -> None:
-        """Write the spins into a state, and add the vibrational energies of fixed particles."""
         spins = self.arrays["spins"]
         state.spins = (spins[:, 2] if state.dimension == 2 else spins).copy()
         if state.vibrations is not None and "vibrations" in self.arrays:
@@ -96,10 +92,8 @@ class LawPart(Part):
 
 
 def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
-    """Return the unit of mass, and masses in this unit (None if all are identical).
-
-    If all particles have the same mass, the kernel model contains no masses, and its sums are later
-    multiplied by the unit.
+    """Return the unit of mass, and masses in this unit (None if all are identical). If all particles have the
+    same mass, the kernel model contains no masses, and its sums are later multiplied by the unit.
     """
     if len(masses) == 0:
         return 1.0, None
@@ -107,10 +101,8 @@ def scaled_masses(masses: np.ndarray) -> tuple[float, np.ndarray | None]:
 
 
 def largest_terms(scene: Scene, state: State, unit_mass: float) -> tuple[float, float]:
-    """Return bounds of momentum and energy that few particles exceed.
-
-    Each bound is a power of two in units that contain `unit_mass`. Sums over threads are integer multiples of
-    small fractions of these bounds.
+    """Return bounds of momentum and energy that few particles exceed. Each bound is a power of two in units
+    that contain `unit_mass`. Sums over threads are integer multiples of small fractions of these bounds.
     """
     moving = np.isfinite(state.masses)
     if not moving.any():
@@ -152,9 +144,8 @@ def slowest_that_moves(scene: Scene) -> float:
 
 
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
-    """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions.
-
-    A particle counts as supported if it is supported against each of these accelerations.
+    """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions. A particle counts as
+    supported if it is supported against each of these accelerations.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -193,9 +184,8 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Fix the particles that belong to a jam at this time, for positions (N, d).
-
-        Returns True if events must be predicted again.
+        """Fix the particles that belong to a jam at this time, for positions (N, d). Returns True if events
+        must be predicted again.
 
         stays : (N,), True if a particle has not moved away from its position
         """
@@ -241,9 +231,8 @@ _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """Return the initial data for the rule of lasting contacts; None without this rule.
-
-    Without this rule every contact dissipates.
+    """Return the initial data for the rule of lasting contacts; None without this rule. Without this rule
+    every contact dissipates.
     """
     return lasting_contacts(scene, law) if scene.contact_duration > 0.0 else None
 
@@ -265,10 +254,8 @@ def lasting_contacts(scene: Scene, law: ContactLaw) -> ContactDuration:
 
 
 class DurationPart(Part):
-    """State of lasting contacts, and of islands and jams under gravity.
-
-    An island is a group of particles at rest that gravity does not move. A jam is a group that contacts do
-    not move either.
+    """State of lasting contacts, and of islands and jams under gravity. An island is a group of particles at
+    rest that gravity does not move. A jam is a group that contacts do not move either.
     """
 
     def __init__(self, law: ContactLaw, duration: ContactDuration, gravity: Gravity | None) -> None:
@@ -280,11 +267,9 @@ class DurationPart(Part):
             self.arrays["inverse_mass"] = law.inverse_mass
 
     def reset(self, clock: float) -> None:
-        """Reset the counters."""
         self._duration.elastic[:], self._duration.kept[:] = 0, 0.0
 
     def counts(self, clock: float) -> dict[str, float]:
-        """Return the number of elastic contacts, and the energy that they did not dissipate."""
         kept = running_sum.net(self._duration.kept)
         return {"elastic_contacts": int(self._duration.elastic[0]), "retained_energy": kept}
 
@@ -300,10 +285,9 @@ class DurationPart(Part):
 
 
 class RestWatch(Part):
-    """Test at regular times whether all particles rest.
-
-    The times do not depend on whether a run is interrupted and continued. The arrays contain the positions
-    (N, d) at the last test, the time of the next test on the clocks of the epoch, and the result of the test.
+    """Test at regular times whether all particles rest. The times do not depend on whether a run is
+    interrupted and continued. The arrays contain the positions (N, d) at the last test, the time of the next
+    test on the clocks of the epoch, and the result of the test.
     """
 
     def __init__(self, scene: Scene, state: State) -> None:
@@ -321,7 +305,6 @@ class RestWatch(Part):
 
     @property
     def at_rest(self) -> bool:
-        """True if all particles rest."""
         return bool(self._rests[0])
 
     def set_clock(self, clock: float) -> None:
@@ -329,9 +312,8 @@ class RestWatch(Part):
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Find the particles that are at rest, and stop them.
-
-        Returns True if events must be predicted again, and False if all particles rest.
+        """Find the particles that are at rest, and stop them. Returns True if events must be predicted again,
+        and False if all particles rest.
         """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
@@ -364,9 +346,8 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """Return the test for a scene in which all particles may come to rest, or None.
-
-    Such a scene has lasting contacts and gravity without a flow, and no face or wall of it adds energy.
+    """Return the test for a scene in which all particles may come to rest, or None. Such a scene has lasting
+    contacts and gravity without a flow, and no face or wall of it adds energy.
     """
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.kernels.model import Gravity, Model, Shear, no_support
-from gaspart.scene.driving import Thermostat
 from gaspart.scene.faces import FLOW, GRADIENT
+from gaspart.scene.restitution import Thermostat
 from gaspart.scene.scene import Scene
 from gaspart.state.random import key_of
 from gaspart.state.state import State
@@ -77,18 +77,16 @@ class Part:
         """
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Shift the times of the part to a new origin of the clocks.
-
-        At the end of an epoch with this `length`, the clocks restart from zero at the time `start`. If epochs
-        become shorter within an epoch, the clocks continue with the new origin `start`.
+        """Shift the times of the part to a new origin of the clocks. At the end of an epoch with this
+        `length`, the clocks restart from zero at the time `start`. If epochs become shorter within an epoch,
+        the clocks continue with the new origin `start`.
         """
         for times in self._times:
             times -= length
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Perform the event scheduled for the time `next`.
-
-        Returns True if all events must be predicted again.
+        """Perform the event scheduled for the time `next`. Returns True if all events must be predicted
+        again.
 
         start : start of the epoch
         """
@@ -200,10 +198,9 @@ def shear_of(scene: Scene) -> Shear | None:
 
 
 class ShearPart(Part):
-    """Displacement of the periodic images in a sheared scene.
-
-    The displacement follows from the time and the initial state, so that checkpoints need not contain it. At
-    each crossing of a sheared face, a particle may gain the velocity of the images.
+    """Displacement of the periodic images in a sheared scene. The displacement follows from the time and the
+    initial state, so that checkpoints need not contain it. At each crossing of a sheared face, a particle may
+    gain the velocity of the images.
     """
 
     def __init__(self, scene: Scene, state: State, shear: Shear) -> None:
@@ -213,10 +210,8 @@ class ShearPart(Part):
         self.gained = shear.velocity**2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the displacement at time 0 of the clocks.
-
-        The displacement is computed as the remainder of a division, which is exact, so that it does not
-        drift.
+        """Continue the displacement at time 0 of the clocks. The displacement is computed as the remainder of
+        a division, which is exact, so that it does not drift.
         """
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
@@ -226,10 +221,9 @@ class ShearPart(Part):
         return model
 
     def write(self, state: State, clock: float) -> None:
-        """Write the displacement of the images beyond the upper face.
-
-        Rounding may place particles beyond a sheared face that they have just reached. They are moved to the
-        face, because they have not crossed it yet.
+        """Write the displacement of the images beyond the upper face. Rounding may place particles beyond a
+        sheared face that they have just reached. They are moved to the face, because they have not crossed it
+        yet.
         """
         shear = self._shear
         here = shear.origin[0] + shear.velocity * clock
@@ -251,10 +245,8 @@ def _width(thermostat: Thermostat, dimension: int, unit_mass: float) -> float:
 
 
 class Kicks(Part):
-    """Thermostat of a scene under the event-driven engine.
-
-    The arrays contain the time of the next kick on the clocks of the epoch, the number of kicks, and the
-    energy added since the last reset.
+    """Thermostat of a scene under the event-driven engine. The arrays contain the time of the next kick on
+    the clocks of the epoch, the number of kicks, and the energy added since the last reset.
     """
 
     def __init__(
@@ -271,21 +263,18 @@ class Kicks(Part):
 
     @property
     def given(self) -> float:
-        """Energy added by kicks since the last reset."""
         from gaspart.kernels.physics import running_sum  # importing numba takes 0.4 s
 
         return running_sum.net(self._given) * self._unit_mass
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Set the time of the next kick to a multiple of the interval.
-
-        The multiple has a single rounding error, while a sum of intervals would accumulate errors. The
-        subtraction of the start of the epoch is exact.
+        """Set the time of the next kick to a multiple of the interval. The multiple has a single rounding
+        error, while a sum of intervals would accumulate errors. The subtraction of the start of the epoch is
+        exact.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self._given[:] = 0.0
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
@@ -307,9 +296,8 @@ def kicks(scene: Scene, seed: int | tuple[int, ...], unit_mass: float) -> Kicks 
 
 
 class StepKicks(Part):
-    """Thermostat of a scene for engines with time steps.
-
-    If several kicks are due in a step, a single kick of the same total strength is applied at its end.
+    """Thermostat of a scene for engines with time steps. If several kicks are due in a step, a single kick of
+    the same total strength is applied at its end.
 
     given_terms : (1, 2), energy added since the last reset, as two terms (see `physics.running_sum.add`)
     """
@@ -324,7 +312,6 @@ class StepKicks(Part):
         super().__init__({"given": self.given_terms})
 
     def reset(self, clock: float) -> None:
-        """Reset the sum of energies."""
         self.given_terms[:] = 0.0
 
     def _kicks_by(self, steps: float) -> int:
@@ -332,9 +319,8 @@ class StepKicks(Part):
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
-        """Return the number of parts of a step from now until the next kick.
-
-        The kick is at the end of the last of these parts.
+        """Return the number of parts of a step from now until the next kick. The kick is at the end of the
+        last of these parts.
 
         part : length of a part, in steps
         """

@@ -21,8 +21,8 @@ from gaspart.kernels.simd import WIDTH
 from gaspart.scene.accessible import Accessible
 from gaspart.scene.faces import FLOW, GRADIENT
 from gaspart.scene.features import row_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State, drift_of
 from gaspart.state.tally import ImpulseTally, PairImpulseTally, PerAreaTally
@@ -54,11 +54,9 @@ class StressPart(TallyPart):
         super().__init__("stress", Stress(sums, np.zeros((2, d + 1)), drift.copy()), {"stress": sums})
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Add the transport by the free motion of particles during the epoch."""
         add_flights(self._flights, length, *self._masses, self.kernel)
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         add_flights(self._flights, -clock, *self._masses, self.kernel)
 
@@ -69,15 +67,12 @@ class StressPart(TallyPart):
         return values(total.sums) * self._unit_mass
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         return tallied_fluxes(self.read(clock), self._drift)
 
 
 class ShearedStressPart(StressPart):
-    """Stress tensor and heat flux of a sheared gas.
-
-    Velocities relative to the flow change during a flight. Therefore the contribution of each flight is
-    computed from the time of its last event.
+    """Stress tensor and heat flux of a sheared gas. Velocities relative to the flow change during a flight.
+    Therefore the contribution of each flight is computed from the time of its last event.
     """
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
@@ -85,10 +80,8 @@ class ShearedStressPart(StressPart):
         self._model = model
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the velocity of the centre of mass relative to the flow.
-
-        The component along the gradient of the flow is constant. Therefore the component along the flow
-        decreases linearly with time.
+        """Set the velocity of the centre of mass relative to the flow. The component along the gradient of
+        the flow is constant. Therefore the component along the flow decreases linearly with time.
         """
         assert model.shear is not None  # otherwise this part would not exist
         across = self._drift[GRADIENT]
@@ -96,19 +89,16 @@ class ShearedStressPart(StressPart):
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the transport by the free motion of particles up to the end of the epoch."""
         add_sheared_flights(self._flights, length, 1.0, self._model, self.kernel)
 
     def end_epoch(self, length: float, start: float) -> None:
         """Do nothing, because the motion starts again in the next epoch."""
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         add_sheared_flights(self._flights, clock, -1.0, self._model, self.kernel)
 
     def read(self, clock: float) -> np.ndarray:
-        """Return the sums (2 d^2 + d,) up to this time on the epoch's clocks."""
         total = self.kernel._replace(sums=self.kernel.sums.copy())
         add_sheared_flights(self._flights, clock, 1.0, self._model, total)
         return values(total.sums) * self._unit_mass
@@ -129,20 +119,17 @@ def stress_part(
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """Return the row (N,) of each particle in sums by species.
-
-    The row is the index of the species. Single particles come first among the particles, but have the last
-    row.
+    """Return the row (N,) of each particle in sums by species. The row is the index of the species. Single
+    particles come first among the particles, but have the last row.
     """
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum that particles transport through planes across an axis.
-
-    The sums contain the momentum below each plane at the last reset, plus all impulses since then. When the
-    tally is read, the present momentum below each plane is subtracted.
+    """Momentum that particles transport through planes across an axis. The sums contain the momentum below
+    each plane at the last reset, plus all impulses since then. When the tally is read, the present momentum
+    below each plane is subtracted.
 
     flights : (N,), particles at the times of their last events
     """
@@ -169,7 +156,6 @@ class ImpulsesPart(TallyPart):
         kernels.add_momenta(flights, sign, model, self.kernel._replace(sums=sums))
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
         self._add_momenta(clock, 1.0, self.kernel.sums)
 
@@ -180,7 +166,6 @@ class ImpulsesPart(TallyPart):
         return np.asarray(self._unit_mass * np.cumsum(sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
@@ -216,7 +201,6 @@ class PairImpulsesPart(TallyPart):
         self._units = np.array([[unit], [unit / kernel.share]])
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0
 
     def read(self, clock: float) -> np.ndarray:
@@ -224,7 +208,6 @@ class PairImpulsesPart(TallyPart):
         return np.asarray(self._units * np.cumsum(self.kernel.sums, axis=1)[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         sums = self.read(clock)
         return {"contact_impulse_sum": sums[MEETING], "other_impulse_sum": sums[OTHERS]}
 
@@ -264,9 +247,8 @@ PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size.
-
-    The inverse is 0 for faces that no centre can reach. Fixed particles have the index 0.
+    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size. The inverse is
+    0 for faces that no centre can reach. Fixed particles have the index 0.
     """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
@@ -277,9 +259,8 @@ def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,).
-
-    Interior walls have the value 0.
+    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,). Interior walls have the
+    value 0.
     """
     return {
         "momentum_per_area": np.pad(momentum, ((0, walls), (0, 0))),
@@ -288,9 +269,8 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Momentum and heat per accessible area, for the event-driven engine.
-
-    Masses are in units of `unit_mass`.
+    """Momentum and heat per accessible area, for the event-driven engine. Masses are in units of
+    `unit_mass`.
     """
 
     kernel: PerArea
@@ -302,11 +282,9 @@ class EventPerAreaPart(TallyPart):
         self._scene, self._unit_mass = scene, unit_mass
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         self.kernel.sums[...] = 0.0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         d = self._scene.dimension
         sums = values(self.kernel.sums).reshape(2 * d, d + 1) * self._unit_mass
         return per_area_fields(sums[:, :d], sums[:, d], len(self._scene.walls))
@@ -323,6 +301,5 @@ class ThreadedPerAreaPart(Part):
         self._read = read
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the sums under the names of fields of `Tally`."""
         sums = self._read(self.sums["per_area"])
         return per_area_fields(sums[:, :-1], sums[:, -1], 0)

@@ -13,7 +13,7 @@ from gaspart.kernels.obstacles.moving import advance_wall
 from gaspart.scene.scene import Scene
 from gaspart.scene.walls import MOVING_WALL
 from gaspart.state.boxes import Boxes
-from gaspart.state.interior_walls import wall_rows, walls_near
+from gaspart.state.insertion import wall_rows, walls_near
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
@@ -23,10 +23,8 @@ _INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the
 def interior_walls(
     scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
 ) -> InteriorWalls:
-    """Return the interior walls, with a list of the walls near each box.
-
-    The list can be used for particles with radii up to `largest_radius`. A moving wall is not in the list of
-    any box.
+    """Return the interior walls, with a list of the walls near each box. The list can be used for particles
+    with radii up to `largest_radius`. A moving wall is not in the list of any box.
     """
     rows, wall = wall_rows(scene)
     if moving:
@@ -58,10 +56,9 @@ class WarmWallsPart(Part):
 
 
 def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
-    """Return the kernels' moving wall; None if the scene has no moving wall.
-
-    The mass of the wall is in units of `unit_mass`. Raises SceneError unless there are particles on both
-    sides, because otherwise the wall would leave the container.
+    """Return the kernels' moving wall; None if the scene has no moving wall. The mass of the wall is in units
+    of `unit_mass`. Raises SceneError unless there are particles on both sides, because otherwise the wall
+    would leave the container.
     """
     wall = scene.moving_wall
     if wall is None or state.piston is None:
@@ -82,20 +79,16 @@ class MovingWallPart(Part):
 
     @property
     def stored(self) -> float:
-        """Kinetic energy of the wall."""
         return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
 
     def set_clock(self, clock: float) -> None:
-        """Set the time to which the stored position and velocity apply."""
         self._motion[kernels.PISTON_CLOCK] = clock
 
     def end_epoch(self, length: float, start: float) -> None:
-        """Move the wall to the end of the epoch, which becomes time 0 of its clock."""
         advance_wall(self._motion, length)
         self.set_clock(0.0)
 
     def write(self, state: State, clock: float) -> None:
-        """Write the wall's position along its axis and its velocity into the state."""
         motion = self._motion.copy()
         advance_wall(motion, clock)
         state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

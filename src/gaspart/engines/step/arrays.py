@@ -19,18 +19,18 @@ from gaspart.kernels.step.box_search import StepBoxes
 from gaspart.kernels.step.model import Cells, Search, StepModel, StepParticles, StepTally
 from gaspart.kernels.step.neighbour_list import roomy
 from gaspart.scene.features import row_count
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import ball_volume
 from gaspart.state.boxes import cube_side, make_boxes
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.state.tally import ImpulseTally
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 
-def empty_particles(engine: TimeStepped, scene: Scene, state: State, ordinary: int) -> StepParticles:
+def empty_particles(engine: StepSettings, scene: Scene, state: State, ordinary: int) -> StepParticles:
     """Return empty arrays for the particles, with masses but without a neighbour list.
 
     ordinary : number of particles that are not oversized
@@ -60,7 +60,7 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 
 
 def model_for(
-    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
+    engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
     """Return the kernel model of a scene.
 
@@ -120,11 +120,10 @@ def step_tally(
 
 
 def rules_for(
-    engine: TimeStepped, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
+    engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
-    """Return the kernels' `Rules` for special faces or collision laws, or None.
-
-    These faces and laws change more than the momenta of particles, for example spins.
+    """Return the kernels' `Rules` for special faces or collision laws, or None. These faces and laws change
+    more than the momenta of particles, for example spins.
 
     space : space in the form of the kernels of this engine
     """
@@ -175,11 +174,9 @@ def needs_rules(scene: Scene) -> bool:
 
 
 class ImpulsesPart(TallyPart):
-    """Momentum that particles transport through planes across an axis.
-
-    The transported momentum is the momentum below each plane at the last reset (`momenta`), plus all impulses
-    since then, minus the present momentum below the plane. `kernel` contains the fields of a `StepTally`, by
-    name.
+    """Momentum that particles transport through planes across an axis. The transported momentum is the
+    momentum below each plane at the last reset (`momenta`), plus all impulses since then, minus the present
+    momentum below the plane. `kernel` contains the fields of a `StepTally`, by name.
 
     particles : particles of the kernels
     units : unit of mass, and the bound of a particle's momentum in this unit
@@ -215,10 +212,8 @@ class ImpulsesPart(TallyPart):
         self.reset(0.0)
 
     def _momenta(self) -> np.ndarray:
-        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins.
-
-        Momenta are summed in the order of particle numbers, so that rounding does not depend on the order in
-        memory.
+        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins. Momenta are
+        summed in the order of particle numbers, so that rounding does not depend on the order in memory.
         """
         particles = self._particles
         order = np.argsort(particles.index)
@@ -232,7 +227,6 @@ class ImpulsesPart(TallyPart):
         return binned
 
     def reset(self, clock: float) -> None:
-        """Begin to count from zero."""
         super().reset(clock)
         self.arrays["momenta"][...] = self._momenta()
 
@@ -243,7 +237,6 @@ class ImpulsesPart(TallyPart):
         return np.asarray(self._unit_mass * below[:, :-1])
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the momentum under its field of `Tally`."""
         return {"momentum_flux_sum": self.read(clock)}
 
 
@@ -275,7 +268,7 @@ _REBUILD, _TEST, _PAIR = 25.0, 2.0, 6.0  # ns per particle, candidate and listed
 _LEAST = 1.6  # minimum skin, in distances by which the fastest two particles approach in a step
 
 
-def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Search:
+def search_for(engine: StepSettings, scene: Scene, state: State, radii: np.ndarray) -> Search:
     """Return boxes, or cells and an empty neighbour list, for particles with these radii."""
     pairs = np.empty((engine.threads, state.count // engine.threads + 16), np.uint64)
     if engine.boxes_per_side is None:
@@ -294,7 +287,7 @@ def search_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarra
     return Search(boxes, None, pairs)
 
 
-def cells_for(engine: TimeStepped, scene: Scene, state: State, radii: np.ndarray) -> Cells:
+def cells_for(engine: StepSettings, scene: Scene, state: State, radii: np.ndarray) -> Cells:
     """Return the cells of the neighbour list."""
     real = np.dtype(engine.precision).type
     lengths, periodic = scene.container.lengths, scene.container.periodic
@@ -331,10 +324,9 @@ def _width(scene: Scene, count: int) -> float:
     return cube_side(scene.container.lengths, _CELLS_PER_PARTICLE * count)
 
 
-def _skin(engine: TimeStepped, scene: Scene, state: State, contact: float) -> float:
-    """Return the skin thickness with the lowest cost.
-
-    With a thin skin, lists must be made often; with a thick skin, they contain many pairs.
+def _skin(engine: StepSettings, scene: Scene, state: State, contact: float) -> float:
+    """Return the skin thickness with the lowest cost. With a thin skin, lists must be made often; with a
+    thick skin, they contain many pairs.
     """
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)

@@ -35,7 +35,7 @@ from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 _BY_THREAD = ("wall_hits", "wall_impulse", "wall_loss")
 _OF_ALL = ("counts", "sums", "extremes")
@@ -47,7 +47,7 @@ class StepDynamics(SteppedDynamics):
 
     def __init__(
         self,
-        engine: TimeStepped,
+        engine: StepSettings,
         scene: Scene,
         state: State,
         seed: int | tuple[int, ...],
@@ -115,13 +115,11 @@ class StepDynamics(SteppedDynamics):
 
     @property
     def _loss(self) -> np.ndarray:
-        """Energy removed by contacts between particles, and by walls, in each thread."""
         tally = self._tally
         at_walls = running_sum.whole_parts(tally.wall_loss, self._largest[1])
         return np.vstack([tally.sums[layout.LOSS], at_walls])
 
     def _advance_to(self, step: int) -> None:
-        """Advance to a step. Raises SimulationError for a step that is too long for the particles."""
         self._run(step - self._steps)
         self._steps = step
         counts = self._tally.counts
@@ -137,14 +135,12 @@ class StepDynamics(SteppedDynamics):
         self._search = self._search._replace(pairs=pairs)
 
     def _sums(self) -> dict[str, np.ndarray]:
-        """Return the arrays of counters by name; arrays that all threads share have a single row."""
         common = {key: getattr(self._tally, key)[np.newaxis] for key in _OF_ALL}
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return the momentum along each axis and the heat given to each face, per accessible area.
-
-        The shape is (2d, d + 1).
+        """Return the momentum along each axis and the heat given to each face, per accessible area. The shape
+        is (2d, d + 1).
 
         most : inverse of the smallest area
         """
@@ -167,19 +163,16 @@ class StepDynamics(SteppedDynamics):
         }
 
     def _checkpoint_data(self) -> dict[str, Any]:
-        """Return the data of a checkpoint, including bounds and origin of the neighbour list."""
         return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the origin of the neighbour list.
-
-        The origin is not required because the checkpoint may be from another search.
+        """Return the arrays required from a checkpoint, except the origin of the neighbour list. The origin
+        is not required because the checkpoint may be from another search.
         """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
 
     def _place_again(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Place the particles, with the neighbour list of the checkpoint if its settings are the same."""
         super()._place_again(checkpoint)
         self._particles.bounds[...] = 0.0, np.inf  # as at the start: the next step makes a list
         if self._has_list_of(checkpoint):
@@ -187,9 +180,8 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """Return the origin (d, N) of the neighbour list by slot, and its settings.
-
-        The origin consists of the positions of the particles when the list was made.
+        """Return the origin (d, N) of the neighbour list by slot, and its settings. The origin consists of
+        the positions of the particles when the list was made.
         """
         if self._search.cells is None:
             return {}

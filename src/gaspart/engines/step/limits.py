@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gaspart.errors import SceneError, SimulationError
-from gaspart.scene.limits import ball_volume
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import CLOSE_PACKING, ball_volume
 from gaspart.state.state import State
-from gaspart.theory.discretisation import MISSED_CONTACTS, ONE_PASS, contact_values
+from gaspart.theory.discretisation import HIGHEST, MISSED_CONTACTS, ONE_PASS, contact_values
 
 if TYPE_CHECKING:
-    from gaspart.engines.step.settings import TimeStepped
+    from gaspart.engines.step.settings import StepSettings
 
 
 _OVERSIZED = 16  # maximum number of oversized particles, which are tested against all others
@@ -50,10 +50,16 @@ which the engine warns.
 
 SAFE = 2.0
 """Maximum error of a pressure or a rate, divided by the fraction of missed contacts."""
-DISORDER = {True: 0.002, False: 0.15}
-"""Maximum error of a rate due to contacts in a wrong order, divided by the square of the contacts of a
-particle in a step. The keys are True for several passes. Measured: 0.0015 and 0.1 (docs/time-stepped.md).
+DISORDER = {True: 0.012, False: 0.22}
+"""Maximum error of a rate near close packing due to contacts in a wrong order, divided by the square of the
+contacts of a particle in a step. The keys are True for several passes. In one pass it is the same at all
+densities; in several it grows as the cube of the packing fraction (measured: docs/time-stepped.md).
 """
+FREEZING = 0.49
+"""Packing fraction of the most dilute crystal of spheres; discs need more."""
+CRYSTAL = {2: 0.9, 3: 1.56}
+"""Z - 1 - d / alpha of a crystal near close packing, alpha = V / V_c - 1, by dimension: Alder, Hoover &
+Young, J. Chem. Phys. 49, 3688 (1968)."""
 LATER = 0.6
 """Largest error of the density at walls, divided by the contacts of a particle in a step.
 
@@ -64,9 +70,8 @@ a slit of 1.5 diameters: 0.49).
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """Return a mask (N,) of the particles that are too large for boxes and cells.
-
-    There are only a few such particles, and they are much larger than all other particles.
+    """Return a mask (N,) of the particles that are too large for boxes and cells. There are only a few such
+    particles, and they are much larger than all other particles.
     """
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
@@ -92,13 +97,11 @@ def check_scene(scene: Scene, state: State, oversized: np.ndarray) -> None:
             raise SceneError("lengths", scene.container.lengths, rule)
 
 
-def check_precision(engine: TimeStepped, scene: Scene, state: State) -> None:
-    """Raise SceneError if the floating-point precision does not resolve steps or sizes.
-
-    A step is rejected if particles move by less than the rounding error of their positions, or so far that
-    the rounding error is as large as the container. In float32, lengths and speeds are rejected if their
-    squares are out of range. Particles are rejected if the precision cannot resolve their contacts in the
-    container.
+def check_precision(engine: StepSettings, scene: Scene, state: State) -> None:
+    """Raise SceneError if the floating-point precision does not resolve steps or sizes. A step is rejected if
+    particles move by less than the rounding error of their positions, or so far that the rounding error is as
+    large as the container. In float32, lengths and speeds are rejected if their squares are out of range.
+    Particles are rejected if the precision cannot resolve their contacts in the container.
     """
     longest, speeds = max(scene.container.lengths), np.sqrt((state.velocities**2).sum(axis=1))
     typical, fastest = math.sqrt(float((speeds**2).mean())) if state.count else 0.0, speeds.max(initial=0.0)
@@ -138,28 +141,40 @@ def _kinds_of(state: State) -> Kinds:
 
 
 def missed_contacts(time_step: float, several: bool, state: State) -> float:
-    """Return the fraction of contacts that are missed because they begin and end within a step.
-
-    The fraction is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each
-    species. It depends on whether there are several passes. The result is the mean over all pairs of species,
-    weighted by their collision rates.
+    """Return the fraction of contacts that are missed because they begin and end within a step. The fraction
+    is computed for a dilute gas (`MISSED_CONTACTS`) at the present thermal speed of each species. It depends
+    on whether there are several passes. The result is the mean over all pairs of species, weighted by their
+    collision rates.
     """
     return _missed_fraction(time_step, several, state.dimension, _kinds_of(state))
 
 
-def bias(engine: TimeStepped, scene: Scene, kind: str) -> float:
-    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order.
-
-    The bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
+def bias(engine: StepSettings, scene: Scene, kind: str) -> float:
+    """Bound the relative error of an observable due to missed contacts and contacts in a wrong order. The
+    bound is for the initial temperature, or for the temperature of the hottest face if this is higher.
     Transfers to walls ("walls", "fluxes") have the additional error `at_walls`.
     """
-    gas, several, d = _kinds_in(scene), engine.passes > 1, scene.dimension
-    met = _contacts(engine.time_step, d, gas, scene.container.volume)
-    error = SAFE * _missed_fraction(engine.time_step, several, d, gas) + DISORDER[several] * met**2
-    return float(error + (at_walls(scene) * met if kind in ("walls", "fluxes") else 0.0))
+    gas, d, volume = _kinds_in(scene), scene.dimension, scene.container.volume
+    error = _rate_error(engine.time_step, engine.passes > 1, d, gas, volume)
+    if kind in ("walls", "fluxes"):
+        error += at_walls(scene) * _contacts(engine.time_step, d, gas, volume)
+    return error
 
 
-def wall_density_error(engine: TimeStepped, scene: Scene) -> float:
+def rate_error(time_step: float, several: bool, state: State) -> float:
+    """Bound the relative error of rates for a state; the bound is proportional to the square of the step."""
+    return _rate_error(time_step, several, state.dimension, _kinds_of(state), float(state.lengths.prod()))
+
+
+def _rate_error(time_step: float, several: bool, dimension: int, gas: Kinds, volume: float) -> float:
+    missed = _missed_fraction(time_step, several, dimension, gas)
+    met = _contacts(time_step, dimension, gas, volume)
+    packing = _packing_fraction(dimension, gas, volume) / CLOSE_PACKING[dimension]
+    crowding = min(1.0, packing) ** 3 if several else 1.0
+    return SAFE * missed + DISORDER[several] * crowding * met**2
+
+
+def wall_density_error(engine: StepSettings, scene: Scene) -> float:
     """Bound the relative error of the density within a few v dt of a wall; 0 without walls."""
     if not scene.walled_axes:
         return 0.0
@@ -168,10 +183,9 @@ def wall_density_error(engine: TimeStepped, scene: Scene) -> float:
 
 
 def at_walls(scene: Scene) -> float:
-    """Return the error of transfers to walls, divided by the contacts of a particle in a step.
-
-    Far from walls, momentum is balanced for any order of contacts. So the error is proportional to the
-    fraction of the particles within a radius of a wall.
+    """Return the error of transfers to walls, divided by the contacts of a particle in a step. Far from
+    walls, momentum is balanced for any order of contacts. So the error is proportional to the fraction of the
+    particles within a radius of a wall.
     """
     radius = scene.largest_moving_radius
     lower, upper = (np.array(ends) for ends in scene.reach(radius))
@@ -201,10 +215,9 @@ def _missed_fraction(time_step: float, several: bool, dimension: int, gas: Kinds
     return float(factor * (rate * missed).sum() / rate.sum())
 
 
-def check_step(engine: TimeStepped, state: State) -> None:
-    """Raise SceneError if the step causes large errors; warn of errors of a few percent.
-
-    The message recommends a sufficiently short step.
+def check_step(engine: StepSettings, state: State) -> None:
+    """Raise SceneError if the step causes large errors; warn of errors of a few percent. The message
+    recommends a sufficiently short step.
     """
     if state.count < 2:
         return
@@ -224,11 +237,10 @@ def check_step(engine: TimeStepped, state: State) -> None:
     warnings.warn(f"gaspart: time_step = {engine.time_step:g} {rule}", stacklevel=4)
 
 
-def check_late(engine: TimeStepped, time: float, met: int, late: int, passed: int) -> None:
-    """Raise SimulationError if too many contacts are found a step too late.
-
-    SimulationError is also raised if particles pass through each other. In both cases the step is too long,
-    because speeds are high or gaps are narrow.
+def check_late(engine: StepSettings, time: float, met: int, late: int, passed: int) -> None:
+    """Raise SimulationError if too many contacts are found a step too late. SimulationError is also raised if
+    particles pass through each other. In both cases the step is too long, because speeds are high or gaps are
+    narrow.
     """
     most = [max(FEW, part * met) for part in (LATE_MOST, PASSED_MOST)]
     if engine.passes > 1 and (late > most[0] or passed > most[1]):
@@ -245,21 +257,32 @@ def contacts_per_step(time_step: float, state: State) -> float:
     return _contacts(time_step, state.dimension, gas, float(state.lengths.prod()))
 
 
-def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> float:
-    """Return the mean number of collisions of a particle in a step.
+def _packing_fraction(dimension: int, gas: Kinds, volume: float) -> float:
+    return ball_volume(dimension) * float((gas.number * gas.radius**dimension).sum()) / volume
 
-    The number is the step times Enskog's collision rate for particles of one size at the same packing
-    fraction. The contact value is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for
-    discs.
+
+def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> float:
+    """Return the mean number of collisions of a particle in a step. The number is the step times the
+    collision rate of particles of one size at the same packing fraction, see `_contact_value`.
     """
     count = gas.number.sum()
     if count < 2.0:
         return 0.0
-    ball = ball_volume(dimension) * float((gas.number * gas.radius**dimension).sum() / count)
-    density = count / volume
-    eta = min(density * ball, 0.7)  # higher only where a face stops centres
-    diameter = 2.0 * (ball / ball_volume(dimension)) ** (1.0 / dimension)
-    contact = float(contact_values(np.array([eta / ball]), np.array([0.5 * diameter]), dimension)[0, 0])
+    eta = _packing_fraction(dimension, gas, volume)
+    diameter = 2.0 * (eta * volume / count / ball_volume(dimension)) ** (1.0 / dimension)
     thermal = math.sqrt(math.pi * float((gas.number * gas.square).sum() / count))
     around = 4.0 * diameter**2 if dimension == 3 else 2.0 * diameter
-    return float(density * around * contact * thermal * time_step)
+    return float(count / volume * around * _contact_value(eta, dimension) * thermal * time_step)
+
+
+def _contact_value(eta: float, dimension: int) -> float:
+    """Return the larger contact value of the fluid and of a crystal, for particles of one size. The fluid's
+    is by Carnahan & Starling (1969) for spheres, and by Henderson (1975) for discs. Above close packing,
+    which needs several sizes or faces that stop centres, it is the fluid's at its highest.
+    """
+    ball = ball_volume(dimension, 0.5)
+    fluid = float(contact_values(np.array([min(eta, HIGHEST) / ball]), np.array([0.5]), dimension)[0, 0])
+    if not FREEZING < eta < CLOSE_PACKING[dimension]:
+        return fluid
+    alpha = CLOSE_PACKING[dimension] / eta - 1.0
+    return max(fluid, (dimension / alpha + CRYSTAL[dimension]) / (2.0 ** (dimension - 1) * eta))

@@ -18,9 +18,8 @@ CONJUGATE = -1
 
 @inner_helper
 def tabulate_factors(cosines, sines, first, products, real, imaginary):
-    """Compute the rows of factors of a block; beyond the last particle they are 0.
-
-    Row 0 is 1, the next rows are the factors of the axes, and the other rows are `products`.
+    """Compute the rows of factors of a block; beyond the last particle they are 0. Row 0 is 1, the next rows
+    are the factors of the axes, and the other rows are `products`.
     """
     here = min(BLOCK, cosines.shape[1] - first)
     base = 1 + len(cosines)

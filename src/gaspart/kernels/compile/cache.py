@@ -22,9 +22,8 @@ _REMEDY = "set GASPART_CACHE to a writable folder"
 
 
 def cache_directory() -> Path:
-    """Return $GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache.
-
-    Raises RuntimeError if neither variable is set and the user has no home folder.
+    """Return $GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache. Raises RuntimeError if
+    neither variable is set and the user has no home folder.
     """
     chosen = os.environ.get("GASPART_CACHE")
     if chosen:
@@ -33,11 +32,9 @@ def cache_directory() -> Path:
 
 
 def usable_cache(version: str) -> Path | None:
-    """Return the folder `version` of the cache, and create it if necessary.
-
-    A cache folder must be writable by this user and by no other user. Otherwise a temporary folder is used,
-    with a warning. Returns None, with a warning, if the temporary folder cannot be written either, or if
-    $GASPART_CACHE cannot be written.
+    """Return the folder `version` of the cache, and create it if necessary. A cache folder must be writable
+    by this user and by no other user. Otherwise a temporary folder is used, with a warning. Returns None,
+    with a warning, if the temporary folder cannot be written either, or if $GASPART_CACHE cannot be written.
     """
     try:
         directory: Path | None = cache_directory() / version
@@ -64,9 +61,8 @@ def report_unwritable(directory: Path, error: OSError) -> None:
 
 
 def obstacle(directory: Path) -> str:
-    """Return the reason why a folder cannot store kernels, or "" if it can.
-
-    The folder is created if it is missing.
+    """Return the reason why a folder cannot store kernels, or "" if it can. The folder is created if it is
+    missing.
     """
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
@@ -80,17 +76,15 @@ def obstacle(directory: Path) -> str:
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Return True if a path is a folder that only this user can write to.
-
-    This test ensures that no other user can place machine code in the folder.
+    """Return True if a path is a folder that only this user can write to. This test ensures that no other
+    user can place machine code in the folder.
     """
     return stat.S_ISDIR(status.st_mode) and is_private(status)
 
 
 def _temporary(version: str) -> Path | None:
-    """Return a folder of this user in the folder for temporary files, or None.
-
-    Another user may have created a folder with this name before; such a folder is not used.
+    """Return a folder of this user in the folder for temporary files, or None. Another user may have created
+    a folder with this name before; such a folder is not used.
     """
     try:
         own = Path(tempfile.gettempdir()) / f"gaspart-{user()}"
@@ -109,10 +103,8 @@ _LOOKED_FOR = {"coverage", "scipy.linalg.cython_blas"}
 
 
 def load_numba(ours: bool = False) -> ModuleType:
-    """Import numba and all modules that it would load with the first kernel.
-
-    This creates half a million objects that stay in memory, so the garbage collector is switched off during
-    the import.
+    """Import numba and all modules that it would load with the first kernel. This creates half a million
+    objects that stay in memory, so the garbage collector is switched off during the import.
 
     ours : True if the process belongs to gaspart and to no other program. Then the collector ignores these
         objects also later and at the end of the process, and optional imports of numba that kernels of
@@ -156,10 +148,9 @@ FEATURES = (
 
 
 def shipped_key(key: tuple) -> tuple | None:
-    """Convert the key of a kernel on this processor to the key of a shipped kernel.
-
-    A key contains the types of the arguments, the processor and the hash of the bytecode. Returns None if the
-    processor lacks a feature that shipped kernels use.
+    """Convert the key of a kernel on this processor to the key of a shipped kernel. A key contains the types
+    of the arguments, the processor and the hash of the bytecode. Returns None if the processor lacks a
+    feature that shipped kernels use.
     """
     types, (system, _, features), bytecode = key
     if not set(FEATURES.split(",")) <= set(features.split(",")):
@@ -168,9 +159,8 @@ def shipped_key(key: tuple) -> tuple | None:
 
 
 def shipped_content(path: str) -> bytes | None:
-    """Return the content of a shipped file, by its path in the folder of shipped kernels.
-
-    Returns None if the file is not in the list, is missing, or differs from its hash in the list.
+    """Return the content of a shipped file, by its path in the folder of shipped kernels. Returns None if the
+    file is not in the list, is missing, or differs from its hash in the list.
     """
     expected = _digests().get(path)
     if expected is None:
@@ -184,9 +174,8 @@ def shipped_content(path: str) -> bytes | None:
 
 @cache
 def _digests() -> dict[str, str]:
-    """Return the sha256 of each shipped file by its path.
-
-    In a copy of the repository the result is empty, because it contains no compiled kernels.
+    """Return the sha256 of each shipped file by its path. In a copy of the repository the result is empty,
+    because it contains no compiled kernels.
     """
     try:
         listed = json.loads((FOLDER / LIST).read_bytes())

@@ -44,9 +44,8 @@ def _code(content: bytes | None) -> bytes | None:
 
 
 def _own_content(path: str) -> bytes | None:
-    """Read a file that this user has written; return None without one.
-
-    A file written by another user is rejected, because its code would run with the rights of this user.
+    """Read a file that this user has written; return None without one. A file written by another user is
+    rejected, because its code would run with the rights of this user.
     """
     try:
         with open(path, "rb") as file:
@@ -56,10 +55,9 @@ def _own_content(path: str) -> bytes | None:
 
 
 class KernelLocator(caching.UserProvidedCacheLocator):
-    """Locator of the folder of a function's files, shared by all copies of the package.
-
-    For functions of `kernels` the hash of the modules that their module needs suffices. numba uses the hash
-    of the file, the line number and the bytecode, which change with comments and docstrings.
+    """Locator of the folder of a function's files, shared by all copies of the package. For functions of
+    `kernels` the hash of the modules that their module needs suffices. numba uses the hash of the file, the
+    line number and the bytecode, which change with comments and docstrings.
     """
 
     def __init__(self, folder: Path, function: Callable) -> None:
@@ -104,9 +102,8 @@ class KernelFiles(caching.IndexDataCacheFile):
             scratch.replace(path)
 
     def load(self, key: tuple) -> Any:
-        """Return the compiled code for `key`, or None if no complete file exists.
-
-        A file of this user is preferred to a file of the package.
+        """Return the compiled code for `key`, or None if no complete file exists. A file of this user is
+        preferred to a file of the package.
         """
         code = _code(_own_content(self._data_path(self._name(key))))
         if code is None:
@@ -114,9 +111,8 @@ class KernelFiles(caching.IndexDataCacheFile):
         return None if code is None else pickle.loads(code)
 
     def _read_shipped(self, key: tuple) -> bytes | None:
-        """Return the content of the file that was shipped with the package.
-
-        The folders have the same names as the folders of the cache.
+        """Return the content of the file that was shipped with the package. The folders have the same names
+        as the folders of the cache.
         """
         for_many = shipped_key(key)
         if for_many is None:
@@ -125,10 +121,8 @@ class KernelFiles(caching.IndexDataCacheFile):
         return shipped_content(f"{folder.parent.name}/{folder.name}/{self._name(for_many)}")
 
     def _name(self, key: tuple) -> str:
-        """Return the name of the file for a key.
-
-        The key contains the types of the arguments, the processor, and hashes of the bytecode. The stamp
-        contains the options.
+        """Return the name of the file for a key. The key contains the types of the arguments, the processor,
+        and hashes of the bytecode. The stamp contains the options.
         """
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
@@ -148,9 +142,8 @@ class KernelContents(caching.CompileResultCacheImpl):
 
 
 class KernelCache(caching.FunctionCache):
-    """Cache of a function compiled with given options; it replaces numba's own cache.
-
-    The constructor may raise OSError.
+    """Cache of a function compiled with given options; it replaces numba's own cache. The constructor may
+    raise OSError.
     """
 
     contents: ClassVar = KernelContents

@@ -37,10 +37,8 @@ def narrow_types(function: Callable, arguments: tuple) -> tuple:
 
 
 class Narrowed(types.NamedTuple):
-    """Type of a named tuple that is passed to a function that only kernels call.
-
-    Entries that the function does not use have type None. The type is a class of gaspart, so that the type of
-    numba does not change.
+    """Type of a named tuple that is passed to a function that only kernels call. Entries that the function
+    does not use have type None. The type is a class of gaspart, so that the type of numba does not change.
     """
 
     def __init__(self, kinds: list, instance_class: type) -> None:
@@ -86,11 +84,10 @@ def _leave_out(context: Any, builder: Any, full_type: Any, narrow: Any, value: A
 
 @numba.extending.register_model(Narrowed)
 class _OneArgument(numba.extending.models.TupleModel):
-    """Data model that passes a narrowed tuple as a single argument in machine code.
-
-    numba passes a named tuple as one argument per machine word of its arrays. A `Model` has about two hundred
-    words. Each call unpacks them, and each function packs them again, which amounts to 40 % of all
-    instructions to be translated.
+    """Data model that passes a narrowed tuple as a single argument in machine code. numba passes a named
+    tuple as one argument per machine word of its arrays. A `Model` has about two hundred words. Each call
+    unpacks them, and each function packs them again, which amounts to 40 % of all instructions to be
+    translated.
     """
 
     def get_argument_type(self) -> Any:
@@ -107,9 +104,8 @@ class _OneArgument(numba.extending.models.TupleModel):
 
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
-    """Return the entries of each argument that a function uses, for given argument types.
-
-    The type is `_UNKNOWN` if it cannot be determined.
+    """Return the entries of each argument that a function uses, for given argument types. The type is
+    `_UNKNOWN` if it cannot be determined.
     """
     key = _key(function, arguments)
     if key not in _known_uses:
@@ -118,9 +114,8 @@ def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 
 def _key(function: Callable, arguments: tuple) -> tuple:
-    """Return a key of a function and its argument types: code and numbers of types.
-
-    Hashing the types themselves is slow.
+    """Return a key of a function and its argument types: code and numbers of types. Hashing the types
+    themselves is slow.
     """
     numbers = (kind._code if isinstance(kind, _MATTER) else _UNKNOWN for kind in arguments)
     return function.__code__, tuple(numbers)
@@ -143,9 +138,8 @@ def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 @cache
 def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
-    """Return the source of a function in a module, and the arguments that it assigns.
-
-    Return None for any other function, which has no source.
+    """Return the source of a function in a module, and the arguments that it assigns. Return None for any
+    other function, which has no source.
     """
     try:
         definition = _functions(code.co_filename).get(code.co_firstlineno)
@@ -170,9 +164,8 @@ def _functions(file: str) -> dict[int, ast.FunctionDef]:
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
-    """Return True if all arguments are positional and have no default.
-
-    The arguments that numba passes here have this form.
+    """Return True if all arguments are positional and have no default. The arguments that numba passes here
+    have this form.
     """
     others = arguments.posonlyargs, arguments.kwonlyargs, arguments.defaults
     return not any(others) and arguments.vararg is None and arguments.kwarg is None
@@ -265,9 +258,8 @@ class _Reader(ast.NodeVisitor):
         _merge(at, use)
 
     def _path(self, node: ast.expr) -> list[str] | None:
-        """Return the name of an argument and the entries that an expression selects.
-
-        Returns None for any other expression.
+        """Return the name of an argument and the entries that an expression selects. Returns None for any
+        other expression.
         """
         match node:
             case ast.Name(name) if name in self.uses:

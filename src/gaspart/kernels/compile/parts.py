@@ -29,11 +29,10 @@ _numbers = itertools.count(_FIRST + int.from_bytes(os.urandom(7), "big"))
 
 @contextmanager
 def _own_numbers() -> Iterator[None]:
-    """Give functions that are compiled in this block numbers that no other process uses.
-
-    This includes functions of numba. numba numbers the functions of a process, so that functions of the same
-    name get different names in machine code. Translations from several processes are combined in one kernel,
-    so no two processes may count from the same number.
+    """Give functions that are compiled in this block numbers that no other process uses. This includes
+    functions of numba. numba numbers the functions of a process, so that functions of the same name get
+    different names in machine code. Translations from several processes are combined in one kernel, so no two
+    processes may count from the same number.
     """
     identity = core.bytecode.FunctionIdentity
     before, identity._unique_ids = identity._unique_ids, _numbers
@@ -59,11 +58,9 @@ class _PartLibrary(core.codegen.JITCodeLibrary):
     """Code that is linked into its callers, and is fully optimised and run only there."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        """Perform light optimisation.
-
-        Full optimisation would treat loops around calls as small loops and duplicate them before the called
-        functions are inlined. The kernel would become twice as long, and slower. With NUMBA_OPT=0 there is no
-        optimisation.
+        """Perform light optimisation. Full optimisation would treat loops around calls as small loops and
+        duplicate them before the called functions are inlined. The kernel would become twice as long, and
+        slower. With NUMBA_OPT=0 there is no optimisation.
         """
         ll_module.data_layout = self._codegen._data_layout
         for function in ll_module.functions:
@@ -145,10 +142,9 @@ class _PartContents(KernelContents):
     suffix = "part"
 
     def check_cachable(self, data: Any) -> bool:
-        """Return True if other processes may use a compiler result.
-
-        The result is False if the code calls a function of numba that this process had already compiled for
-        other callers, because other processes may have given its number to another function.
+        """Return True if other processes may use a compiler result. The result is False if the code calls a
+        function of numba that this process had already compiled for other callers, because other processes
+        may have given its number to another function.
         """
         functions = data.library._final_module.functions
         names = (function.name for function in functions if not function.is_declaration)

@@ -75,10 +75,8 @@ def _use_own_files(compiled: Any) -> None:
 
 
 def _without_interruption(compile_: F) -> F:
-    """Wrap a compile function so that signals wait until it has finished.
-
-    If a signal handler raises an exception within a callback of LLVM, the exception is lost, and so is the
-    code.
+    """Wrap a compile function so that signals wait until it has finished. If a signal handler raises an
+    exception within a callback of LLVM, the exception is lost, and so is the code.
     """
 
     @wraps(compile_)
@@ -90,18 +88,16 @@ def _without_interruption(compile_: F) -> F:
 
 
 def kernel(function: F) -> F:
-    """Compile a function that Python calls and that creates no arrays.
-
-    numba's reference counting is switched off. Counting the arrays that are passed between helpers would take
-    several times as long as the computation. Hence the function must not create arrays.
+    """Compile a function that Python calls and that creates no arrays. numba's reference counting is switched
+    off. Counting the arrays that are passed between helpers would take several times as long as the
+    computation. Hence the function must not create arrays.
     """
     return _compile(function, _nrt=False)
 
 
 def helper(function: F) -> F:
-    """Compile a small function like `kernel`, and inline it in its callers.
-
-    Without this option LLVM makes a call, which passes every array as seven words.
+    """Compile a small function like `kernel`, and inline it in its callers. Without this option LLVM makes a
+    call, which passes every array as seven words.
     """
     return _compile(function, _nrt=False, forceinline=True)
 
@@ -112,10 +108,8 @@ def allocating_kernel(function: F) -> F:
 
 
 def inner_kernel(function: F) -> F:
-    """Compile a function that only kernels call, without an entry point for Python.
-
-    For a function that takes the arrays of an engine, this entry point would take longer to compile than the
-    function itself.
+    """Compile a function that only kernels call, without an entry point for Python. For a function that takes
+    the arrays of an engine, this entry point would take longer to compile than the function itself.
     """
     return _compile(function, part=True, _nrt=False)
 
@@ -131,8 +125,7 @@ def inner_allocating_kernel(function: F) -> F:
 
 
 def inner_parallel_kernel(function: F) -> F:
-    """Compile a function that only kernels call, whose `prange` loops are divided among threads.
-
-    The iterations must be independent of each other, so that their order does not matter.
+    """Compile a function that only kernels call, whose `prange` loops are divided among threads. The
+    iterations must be independent of each other, so that their order does not matter.
     """
     return _compile(function, parallel=True, **_UNWRAPPED)

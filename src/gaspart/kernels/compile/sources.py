@@ -31,9 +31,8 @@ _DIGEST = re.compile(r"[0-9a-f]{32}")
 
 
 def file_digests(paths: Iterable[Path]) -> list[str]:
-    """Return the hash of each file.
-
-    The hash of a Python file is computed from its syntax tree, the hash of any other file from its bytes.
+    """Return the hash of each file. The hash of a Python file is computed from its syntax tree, the hash of
+    any other file from its bytes.
     """
     stored, added, digests = _read_stored(), {}, []
     for path in paths:
@@ -52,9 +51,8 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
 
 @cache
 def source_digest() -> str:
-    """Return a short hash of all modules of `kernels`, which contain all compiled code.
-
-    These modules contain no other code. Docstrings and comments do not change the hash.
+    """Return a short hash of all modules of `kernels`, which contain all compiled code. These modules contain
+    no other code. Docstrings and comments do not change the hash.
     """
     return hashlib.sha256("".join(closure_digests().values()).encode()).hexdigest()[:16]
 
@@ -62,7 +60,6 @@ def source_digest() -> str:
 @cache
 def closure_digests(folder: Path = KERNELS) -> dict[str, str]:
     """Return for each file of `kernels` the hash of all modules of `kernels` that it needs, itself included.
-
     Only these modules can change the machine code of its functions.
     """
     paths = sorted(folder.rglob("*.py"))
@@ -99,9 +96,8 @@ def tree_digest(source: bytes) -> str:
 
 
 def _words(node: Any) -> Iterator[str]:
-    """Yield the text of a syntax tree without its empty fields.
-
-    Other versions of Python may have additional empty fields.
+    """Yield the text of a syntax tree without its empty fields. Other versions of Python may have additional
+    empty fields.
     """
     if isinstance(node, ast.AST):
         yield f"({type(node).__name__}"
@@ -121,9 +117,8 @@ def _words(node: Any) -> Iterator[str]:
 
 
 def _is_text(node: Any) -> bool:
-    """Return True if a statement is only a string, such as a docstring.
-
-    The docstring of a constant is also such a statement.
+    """Return True if a statement is only a string, such as a docstring. The docstring of a constant is also
+    such a statement.
     """
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
         return False
@@ -136,9 +131,8 @@ def _digest(content: bytes) -> str:
 
 @cache
 def _read_stored() -> dict[str, str]:
-    """Return the stored hashes of trees by the hashes of the file contents.
-
-    They come from the cache folder. Hashes computed by this process are added.
+    """Return the stored hashes of trees by the hashes of the file contents. They come from the cache folder.
+    Hashes computed by this process are added.
     """
     try:
         with open(_folder() / STORE, "rb") as file:
@@ -152,9 +146,8 @@ def _read_stored() -> dict[str, str]:
 
 
 def _store(added: dict[str, str]) -> None:
-    """Add hashes to the stored hashes in the cache folder, if it can be written.
-
-    Otherwise `usable_cache` issues a warning.
+    """Add hashes to the stored hashes in the cache folder, if it can be written. Otherwise `usable_cache`
+    issues a warning.
     """
     try:
         folder = _folder()
@@ -168,9 +161,8 @@ def _store(added: dict[str, str]) -> None:
 
 
 def _folder() -> Path:
-    """Return the folder of the stored hashes.
-
-    Raises RuntimeError if other users may write to it, or if it cannot be written.
+    """Return the folder of the stored hashes. Raises RuntimeError if other users may write to it, or if it
+    cannot be written.
     """
     folder = cache_directory() / "sources"
     if obstacle(folder):

@@ -25,9 +25,8 @@ _EDGE_PIXELS = 0.8  # half of the width of the container's edges
 
 @kernel
 def list_spheres(lowest, highest, numbers, cursors, listed):
-    """Count the spheres of each cell in `cursors`, or fill the lists of the cells.
-
-    If `listed` is not empty, the index of each sphere is written to the next free entry of its cells.
+    """Count the spheres of each cell in `cursors`, or fill the lists of the cells. If `listed` is not empty,
+    the index of each sphere is written to the next free entry of its cells.
     """
     for i in range(len(lowest)):
         for x in range(lowest[i, 0], highest[i, 0] + 1):
@@ -69,10 +68,7 @@ def _hit(o, d, sphere):
 
 @inner_kernel
 def _nearest(o, d, spheres, grid, any_will_do):
-    """Return distance and index of the first sphere on a ray.
-
-    Without a hit they are infinity and -1.
-    """
+    """Return distance and index of the first sphere on a ray. Without a hit they are infinity and -1."""
     low, side, numbers, first, listed, _ = grid
     enter, leave = 0.0, math.inf
     for k in range(3):
@@ -113,12 +109,11 @@ def _nearest(o, d, spheres, grid, any_will_do):
 
 @kernel
 def sky(p, n, spheres, grid):
-    """Return the fraction of the sky above a point that is not hidden by near spheres.
-
-    A sphere of radius r hides c / h^2 of the light of a uniform sky if it is completely above the horizon
-    (exact). Its centre is at the distance h r, and c is the cosine of its angle to the normal. As the sphere
-    sets, this fraction goes to 0. Only spheres closer than the side of a cell count, and their effect fades
-    with distance. Each sphere counts once, in the first of the 27 cells that contains it.
+    """Return the fraction of the sky above a point that is not hidden by near spheres. A sphere of radius r
+    hides c / h^2 of the light of a uniform sky if it is completely above the horizon (exact). Its centre is
+    at the distance h r, and c is the cosine of its angle to the normal. As the sphere sets, this fraction
+    goes to 0. Only spheres closer than the side of a cell count, and their effect fades with distance. Each
+    sphere counts once, in the first of the 27 cells that contains it.
 
     p : point on a surface
     n : normal of the surface
@@ -152,9 +147,8 @@ def sky(p, n, spheres, grid):
 
 @inner_kernel
 def _edge(o, d, edges, thickness):
-    """Return the distance of the nearest edge of the container that a ray touches.
-
-    A ray touches an edge if it passes within `thickness` times this distance.
+    """Return the distance of the nearest edge of the container that a ray touches. A ray touches an edge if
+    it passes within `thickness` times this distance.
     """
     best = math.inf
     for m in range(len(edges)):
@@ -252,9 +246,8 @@ def _direction(column, row, image, view, scales):
 
 @kernel
 def render_once(image, codes, skies, view, scales, scene, grid):
-    """Trace one ray through the centre of every pixel.
-
-    `skies` (H, W) is filled with the free sky fractions of the objects.
+    """Trace one ray through the centre of every pixel. `skies` (H, W) is filled with the free sky fractions
+    of the objects.
     """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for row in range(codes.shape[0]):
@@ -268,10 +261,8 @@ def render_once(image, codes, skies, view, scales, scene, grid):
 
 @inner_helper
 def _light_around(code, row, column, codes, skies):
-    """Return light and free sky fraction of an object in the neighbouring pixels.
-
-    The light is 1 or 0. Both values are -1 if they differ between pixels, or if no neighbouring pixel shows
-    the object.
+    """Return light and free sky fraction of an object in the neighbouring pixels. The light is 1 or 0. Both
+    values are -1 if they differ between pixels, or if no neighbouring pixel shows the object.
     """
     lit, free = -2, -1.0
     for y in range(max(row - 1, 0), min(row + 2, codes.shape[0])):
@@ -296,11 +287,9 @@ def _shows(code, row, column, codes):
 
 @kernel
 def refine(image, codes, skies, pixels, view, scales, scene, grid):
-    """Trace SUBRAYS x SUBRAYS rays through the `pixels` (M, 2), given by row and column.
-
-    The light and the free sky fraction of an object are taken from the neighbouring pixels if these agree. If
-    the first four rays, near the corners, hit the same object as the ray through the centre, no further rays
-    are traced.
+    """Trace SUBRAYS x SUBRAYS rays through the `pixels` (M, 2), given by row and column. The light and the
+    free sky fraction of an object are taken from the neighbouring pixels if these agree. If the first four
+    rays, near the corners, hit the same object as the ray through the centre, no further rays are traced.
     """
     o, thickness = (view[0, 0], view[0, 1], view[0, 2]), 2.0 * _EDGE_PIXELS * scales[0] / image.shape[1]
     for n in range(len(pixels)):

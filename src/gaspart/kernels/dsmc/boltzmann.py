@@ -51,9 +51,8 @@ class Sums(NamedTuple):
 
 @inner_helper
 def unit_vector(key, step, cell, trial):
-    """Draw an isotropic unit vector (3,) (Marsaglia, Ann. Math. Stat. 43, 645 (1972)).
-
-    The random words are blocks 1, 2, ... of the trial.
+    """Draw an isotropic unit vector (3,) (Marsaglia, Ann. Math. Stat. 43, 645 (1972)). The random words are
+    blocks 1, 2, ... of the trial.
     """
     block = 0
     while True:
@@ -195,9 +194,8 @@ def count_loss(context):
 
 @inner_helper
 def collide_loaded_pair(normal, context, law):
-    """Apply the collision law to the particles in a thread's workspace.
-
-    Returns the momentum transferred along the normal.
+    """Apply the collision law to the particles in a thread's workspace. Returns the momentum transferred
+    along the normal.
     """
     flights = context.workspace.flights[context.part]
     rr = rv = 0.0
@@ -338,10 +336,8 @@ def widen_range(x, y, low, high):
 
 @inner_helper
 def bounds_of(u, v, w, first, end):
-    """Return the ranges of three arrays, computed in one loop.
-
-    Each comparison waits for the previous one, so a loop over three arrays takes no longer than a loop over
-    one array.
+    """Return the ranges of three arrays, computed in one loop. Each comparison waits for the previous one, so
+    a loop over three arrays takes no longer than a loop over one array.
     """
     low_u = high_u = u[first]
     low_v = high_v = v[first]
@@ -366,10 +362,9 @@ def smallest_part(particles, cell, slots, grid, context):
 
 @inner_helper
 def section_of(particles, pair, cell, grid, context):
-    """Return the cross-section of the particles in two slots, divided by the part of the cell for pairs.
-
-    In a part of the cell that only the smaller particle reaches, there is no collision. So the collision rate
-    is inversely proportional to the part that the smaller particle reaches.
+    """Return the cross-section of the particles in two slots, divided by the part of the cell for pairs. In a
+    part of the cell that only the smaller particle reaches, there is no collision. So the collision rate is
+    inversely proportional to the part that the smaller particle reaches.
     """
     d, kinds = len(context.space.lengths), context.workspace
     if len(kinds.kind) == 0:
@@ -384,9 +379,8 @@ def section_of(particles, pair, cell, grid, context):
 
 @inner_helper
 def scatter_equal(particles, pair, g, square, counter):
-    """Apply an elastic collision to spheres of equal mass.
-
-    Their relative velocity g (3,) becomes isotropic.
+    """Apply an elastic collision to spheres of equal mass. Their relative velocity g (3,) becomes
+    isotropic.
     """
     i, j = pair
     half = 0.5 * sqrt(square)
@@ -433,10 +427,8 @@ def separation_vector(particles, pair):
 
 @inner_helper
 def collide_cell(particles, cell, slots, grid, context, law, stress):
-    """Perform the collisions of one step in a cell.
-
-    The particles of the cell are in slots[0] to slots[1]. For the stress of the algorithm, momentum is
-    transferred between two points of the cell.
+    """Perform the collisions of one step in a cell. The particles of the cell are in slots[0] to slots[1].
+    For the stress of the algorithm, momentum is transferred between two points of the cell.
     """
     first, end = slots
     d, number, key, step = (

@@ -57,9 +57,8 @@ def count(first, end, part, grid):
 
 @inner_kernel
 def find_starts(grid):
-    """Find the first slot of each cell, and in `counts` of each thread in it.
-
-    Empty slots count as one additional cell, so that the last cell ends before them.
+    """Find the first slot of each cell, and in `counts` of each thread in it. Empty slots count as one
+    additional cell, so that the last cell ends before them.
     """
     counts, starts = grid.counts, grid.starts
     offset = np.uint32(0)
@@ -93,9 +92,8 @@ def gather(values, order, permuted):
 
 @inner_helper
 def gather_row(particles, row, first, end, grid):
-    """Write a row of positions or velocities in the new order to the spare row.
-
-    Only the new slots from `first` to `end` are written.
+    """Write a row of positions or velocities in the new order to the spare row. Only the new slots from
+    `first` to `end` are written.
     """
     rows = particles.rows
     spare = particles.data[rows[len(rows) - 2]]
@@ -147,7 +145,6 @@ LEAST_PART = 1.0 / 16.0
 @inner_helper
 def accessible_part(cell, radius, periodic, grid, workspace):
     """Return the part of a cell that the centres of particles of a radius can reach, at least `LEAST_PART`.
-
     The cells cover what the smallest particles can reach.
 
     periodic : (d,), True for periodic axes

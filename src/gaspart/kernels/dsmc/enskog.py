@@ -77,10 +77,9 @@ class Dense(NamedTuple):
 
 @inner_helper
 def contact_value(filled, surface, radius, dense):
-    """Return the contact value of the pair distribution, 1/f + slope X/f^2 + bend X^2/f^3.
-
-    Here f = 1 - filled and X = 2 surface `radius`; `radius` is the product of two radii divided by their sum.
-    See `theory.discretisation`.
+    """Return the contact value of the pair distribution, 1/f + slope X/f^2 + bend X^2/f^3. Here f = 1 -
+    filled and X = 2 surface `radius`; `radius` is the product of two radii divided by their sum. See
+    `theory.discretisation`.
     """
     free = 1.0 - min(filled, _FULLEST)
     ratio = 2.0 * surface * radius / free
@@ -111,9 +110,8 @@ def sliding_maximum(values, room, reach, stride, per_side, wraps):
 
 @inner_kernel
 def look_at_cells(particles, cells, grid, workspace, dense):
-    """Find highest speed and number of particles in cells[0] to cells[1].
-
-    The fields of these cells are smoothed if the weight is positive.
+    """Find highest speed and number of particles in cells[0] to cells[1]. The fields of these cells are
+    smoothed if the weight is positive.
     """
     d = len(particles.images)
     if dense.weight > 0.0:
@@ -261,9 +259,8 @@ def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
 
 @inner_helper
 def approach_along(particles, pair, direction):
-    """Return the speed at which two particles approach along a direction.
-
-    The direction points from the first particle to the second.
+    """Return the speed at which two particles approach along a direction. The direction points from the first
+    particle to the second.
     """
     approach = 0.0
     for k in range(len(particles.images)):
@@ -286,9 +283,8 @@ def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
 
 @inner_helper
 def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
-    """Return the size and density factor of the collision probability, divided by its maximum.
-
-    The particles are in two cells; `kinds` are their kinds.
+    """Return the size and density factor of the collision probability, divided by its maximum. The particles
+    are in two cells; `kinds` are their kinds.
     """
     first, second = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
     size = (first + second) / (2.0 * workspace.largest)
@@ -301,7 +297,6 @@ def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
 @inner_helper
 def weight_of_partner(particles, slot, partner, cell, grid, context, dense, least_part):
     """Return the collision probability relative to its maximum if sizes differ between walls, otherwise 1.
-
     The grid covers what the smallest particles can reach. The weight is 0 for a partner that cannot be where
     the contact direction puts it. It is larger in a cell of which the partners can reach only a part, because
     this part contains all of them.

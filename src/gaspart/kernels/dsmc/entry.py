@@ -52,9 +52,8 @@ def send_in(particles, slot, face, words, context, reservoirs):
 
 @inner_kernel
 def count_entered(particles, slot, grid, present):
-    """Add an entered particle to the count of its cell.
-
-    Before that, its slot was counted as an empty slot.
+    """Add an entered particle to the count of its cell. Before that, its slot was counted as an
+    empty slot.
     """
     parts, absent = len(grid.counts), len(grid.starts) - 1
     locate(particles, slot, slot + 1, grid)

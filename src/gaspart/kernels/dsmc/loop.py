@@ -86,10 +86,7 @@ def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, s
 
 @inner_helper
 def look_at_part(particles, cells, grid, context, dense, law, stress):
-    """Prepare the cells of one thread for the collisions of a dense gas.
-
-    These are cells[0] to cells[1].
-    """
+    """Prepare the cells of one thread for the collisions of a dense gas. These are cells[0] to cells[1]."""
     if stress is not None:
         add_flights(particles, cells, grid, context, stress, law)
     look_at_cells(particles, cells, grid, context.workspace, dense)
@@ -105,9 +102,8 @@ def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stre
 
 @inner_helper
 def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
-    """Perform the collisions of one step in one thread's slabs.
-
-    These are every second slab, beginning with slab `turn`.
+    """Perform the collisions of one step in one thread's slabs. These are every second slab, beginning with
+    slab `turn`.
     """
     slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
     for n in range(slabs[0], slabs[1]):
@@ -191,9 +187,8 @@ def collide_all(particles, grid, context, threads, law, dense, stress):
 
 @allocating_kernel
 def run_steps(particles, grid, context, steps, threads, options):
-    """Perform a number of steps, or fewer if the step length becomes unsuitable.
-
-    Returns the number of steps performed, at least one.
+    """Perform a number of steps, or fewer if the step length becomes unsuitable. Returns the number of steps
+    performed, at least one.
 
     threads : number of threads, or None for one thread
     options : gravity (d,), special faces, collision law, data of a dense gas, sums of the stress, step

@@ -180,9 +180,8 @@ _LOGS = np.array([_natural_log(x / 1.5) + _natural_log(1.2) + _natural_log(1.25)
 
 @inner_helper
 def words_of(key, step, cell, trial, block):
-    """Return four random words of 32 bits, each in a word of 64 bits.
-
-    The generator is Philox4x32-10 (Salmon, Moraes, Dror & Shaw, SC11 (2011)).
+    """Return four random words of 32 bits, each in a word of 64 bits. The generator is Philox4x32-10 (Salmon,
+    Moraes, Dror & Shaw, SC11 (2011)).
 
     key : (2,), words of 32 bits
     step, cell, trial, block : counter; step below 2^53, cell and trial below 2^32, block below 2^8
@@ -208,19 +207,17 @@ def fraction(random_bits):
 
 @inner_helper
 def below(random_bits, count):
-    """Convert a 32-bit word to an integer from 0 to count - 1.
-
-    The relative differences between the probabilities of these integers are at most count / 2^32.
+    """Convert a 32-bit word to an integer from 0 to count - 1. The relative differences between the
+    probabilities of these integers are at most count / 2^32.
     """
     return np.int64((random_bits * np.uint64(count)) >> _HALF)
 
 
 @inner_helper
 def waiting_time(random_bits):
-    """Convert a 32-bit word to an exponentially distributed random number with mean 1.
-
-    The result is -ln of `fraction`, with an error of 1e-12. The leading bits of the word select an entry of a
-    table, and a series gives the remainder.
+    """Convert a 32-bit word to an exponentially distributed random number with mean 1. The result is -ln of
+    `fraction`, with an error of 1e-12. The leading bits of the word select an entry of a table, and a series
+    gives the remainder.
     """
     bits = np.float64(np.float64(random_bits) + 0.5).view(np.int64)
     exponent = (bits >> 52) - 1023

@@ -18,9 +18,8 @@ _FURTHEST = 2.0**31  # periodic images are counted with 32 bits
 
 @inner_helper
 def wrap(particles, slot, axis, length, context):
-    """Move a particle back into the container along a periodic axis.
-
-    The counter FAR is increased if the number of periodic images is too large to be stored.
+    """Move a particle back into the container along a periodic axis. The counter FAR is increased if the
+    number of periodic images is too large to be stored.
     """
     x = particles.data[position_row(particles, axis), slot]
     images = np.floor(x / length)

@@ -32,10 +32,9 @@ _REST = 2.0**-20
 
 @inner_helper
 def time_to_face(y, u, a):
-    """Return the time until a particle reaches a face, and its speed there.
-
-    The height y over the face, the speed u and the acceleration a are directed inwards. The time is the root
-    of y + u t + a t^2/2 in the form without cancellation; inf if the particle never reaches the face.
+    """Return the time until a particle reaches a face, and its speed there. The height y over the face, the
+    speed u and the acceleration a are directed inwards. The time is the root of y + u t + a t^2/2 in the form
+    without cancellation; inf if the particle never reaches the face.
     """
     y = max(y, 0.0)
     square = u * u - 2.0 * y * a
@@ -62,9 +61,8 @@ def along(axis, upper, flights, radius, space, gravity):
 
 @inner_helper
 def next_face(flights, radius, space, gravity, resting):
-    """Return the next face that a particle reaches: (time from now, face, speed towards it).
-
-    Without such a face, the time is infinite and the face equals NONE.
+    """Return the next face that a particle reaches: (time from now, face, speed towards it). Without such a
+    face, the time is infinite and the face equals NONE.
 
     resting : bits of the axes along which the particle rests
     """
@@ -176,9 +174,8 @@ def warm(face, which, heat, shear, context):
 
 @inner_helper
 def momentum_of(mass, flights):
-    """Return the momentum (3,) of the particle in a thread's workspace.
-
-    The third component is 0 in two dimensions.
+    """Return the momentum (3,) of the particle in a thread's workspace. The third component is 0 in two
+    dimensions.
     """
     velocity = flights[0].velocity
     return mass * velocity[0], mass * velocity[1], mass * velocity[2] if len(velocity) == 3 else 0.0
@@ -186,9 +183,8 @@ def momentum_of(mass, flights):
 
 @inner_kernel
 def leave_thermal(i, face, which, number, context, faces, law):
-    """Give a particle at a thermal face the velocity with which it leaves.
-
-    The velocity is random; see `obstacles.thermal`.
+    """Give a particle at a thermal face the velocity with which it leaves. The velocity is random; see
+    `obstacles.thermal`.
 
     i, which : number and kind of the particle
     number : number of the draw for this particle
@@ -275,10 +271,8 @@ def lean(face, which, duration, context, gravity):
 
 @inner_kernel
 def finish_axis(axis, remaining, which, context, gravity):
-    """Move a smooth elastic particle along one axis for some time, with all its bounces.
-
-    The axes are independent. Between the first and the last bounces, whole periods of the motion are
-    performed at once.
+    """Move a smooth elastic particle along one axis for some time, with all its bounces. The axes are
+    independent. Between the first and the last bounces, whole periods of the motion are performed at once.
     """
     space, workspace = context.space, context.workspace
     flights, radius = workspace.flights[context.part], workspace.radius[which]
@@ -328,10 +322,8 @@ def finish_axes(remaining, which, context, gravity, resting):
 
 @inner_helper
 def comes_to_rest(face, speed, remaining, which, context, gravity, law):
-    """Return True if a particle rests at a hard face; count its loss and weight.
-
-    A particle that hits a face rests there if its bounces are too short, because later bounces would be even
-    shorter.
+    """Return True if a particle rests at a hard face; count its loss and weight. A particle that hits a face
+    rests there if its bounces are too short, because later bounces would be even shorter.
     """
     workspace, axis = context.workspace, face // 2
     pull = gravity[axis] if face % 2 else -gravity[axis]  # towards the face
@@ -349,9 +341,8 @@ def comes_to_rest(face, speed, remaining, which, context, gravity, law):
 
 @inner_kernel
 def leave_open(i, face, which, context, present):
-    """Remove a particle, and count the energy and momentum that it carries through the face.
-
-    Its slot remains at rest at the middle of the container.
+    """Remove a particle, and count the energy and momentum that it carries through the face. Its slot remains
+    at rest at the middle of the container.
     """
     if present is None:
         return

@@ -25,10 +25,9 @@ def image_offset(image, space):
 
 @inner_helper
 def time_in_image(flights, i, j, offset, space, gravity, shear):
-    """Return the time at which two particles touch if the second is displaced by `offset` (3,).
-
-    Across sheared faces particle j is also displaced by the shear; then one image represents all images along
-    the flow.
+    """Return the time at which two particles touch if the second is displaced by `offset` (3,). Across
+    sheared faces particle j is also displaced by the shear; then one image represents all images along the
+    flow.
     """
     if shear is not None:
         if offset[GRADIENT] != 0.0:
@@ -41,10 +40,8 @@ def time_in_image(flights, i, j, offset, space, gravity, shear):
 
 @inner_helper
 def first_of_all(particles, boxes, model, tally):
-    """Return the earliest of all events: (time, particle, partner, face code).
-
-    NONE represents a missing particle, partner or face. `boxes` is a single box. No predictions are stored,
-    so none can be outdated.
+    """Return the earliest of all events: (time, particle, partner, face code). NONE represents a missing
+    particle, partner or face. `boxes` is a single box. No predictions are stored, so none can be outdated.
     """
     flights, space, gravity = particles.flights, model.space, model.gravity
     soon = inf

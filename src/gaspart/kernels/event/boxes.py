@@ -69,9 +69,8 @@ def box_of(predictions, boxes, i):
 
 @inner_helper
 def member(boxes, box, n, other):
-    """Return the n-th particle of a box; `other` is the preceding particle.
-
-    The box must contain more than n particles.
+    """Return the n-th particle of a box; `other` is the preceding particle. The box must contain more than n
+    particles.
     """
     if n < PLACES:
         return boxes.members[box, n]
@@ -225,10 +224,8 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
 
 @inner_kernel
 def list_others(particles, i, count, row, boxes, space, tally, gravity):
-    """List the particles in the linked lists of a row of boxes.
-
-    Returns the new number of candidates. If the particles of another row might not fit, the candidates are
-    tested, and the list is emptied.
+    """List the particles in the linked lists of a row of boxes. Returns the new number of candidates. If the
+    particles of another row might not fit, the candidates are tested, and the list is emptied.
 
     row : first box of the row, its image, first step and end along the row
     """
@@ -256,10 +253,9 @@ def list_others(particles, i, count, row, boxes, space, tally, gravity):
 
 @inner_helper
 def span(boxes, axis, at, crossed, dimension):
-    """Return the boxes to be searched along an axis around a box.
-
-    The result consists of the first step, the end (0..3), the number of these boxes, and the number of them
-    that are the box itself. In two dimensions there is one box along the third axis.
+    """Return the boxes to be searched along an axis around a box. The result consists of the first step, the
+    end (0..3), the number of these boxes, and the number of them that are the box itself. In two dimensions
+    there is one box along the third axis.
     """
     if axis >= dimension:
         return uint64(1), uint64(2), 1, 1
@@ -290,10 +286,9 @@ def list_places(boxes, count, box, image, most):
 
 @inner_helper
 def find_contact(particles, number, boxes, space, tally, crossed, gravity):
-    """Search for an earlier contact of a particle in the boxes around its box.
-
-    If the particle has just crossed into this box, only boxes that were not neighbours before are searched.
-    All entries of the array of a box are listed, even unused ones, which costs less than a test.
+    """Search for an earlier contact of a particle in the boxes around its box. If the particle has just
+    crossed into this box, only boxes that were not neighbours before are searched. All entries of the array
+    of a box are listed, even unused ones, which costs less than a test.
 
     crossed : (3,), direction of the crossing along each axis
     """

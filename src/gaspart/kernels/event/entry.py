@@ -32,9 +32,8 @@ def next_attempt(reservoirs):
 
 @inner_helper
 def overlaps(flights, position, j, time, space):
-    """Return True if particle j overlaps a new particle at a position and `time`.
-
-    Particle j need not have been advanced to that time.
+    """Return True if particle j overlaps a new particle at a position and `time`. Particle j need not have
+    been advanced to that time.
     """
     late, sigma, square = time - flights[j].clock, 2.0 * flights[j].radius, 0.0
     for k in range(len(space.lengths)):
@@ -92,9 +91,8 @@ def is_free_of_neighbours(flights, position, time, space, boxes):
 
 @inner_helper
 def is_free(particles, time, queue, boxes, space, reservoirs):
-    """Return True if the particle of the present attempt overlaps no other particle.
-
-    Without a queue the boxes are empty, and all particles are tested.
+    """Return True if the particle of the present attempt overlaps no other particle. Without a queue the
+    boxes are empty, and all particles are tested.
     """
     if queue is not None:
         return is_free_of_neighbours(particles.flights, reservoirs.position, time, space, boxes)
@@ -125,9 +123,8 @@ def predict_entered(particles, i, time, queue, boxes, model, tally):
 
 @inner_kernel
 def admit(particles, queue, boxes, model, tally, limits, reservoirs):
-    """Process attempts to enter, up to the first successful one.
-
-    Returns (number of attempts, time of the last attempt, True if all particle numbers are in use).
+    """Process attempts to enter, up to the first successful one. Returns (number of attempts, time of the
+    last attempt, True if all particle numbers are in use).
 
     limits : (3,), time of the next event of the particles inside, time at which to stop, and maximum number
         of attempts

@@ -41,9 +41,8 @@ def time_of_contact(flights, i, j, offset, space, rate):
 
 @inner_kernel
 def next_face(particles, i, boxes, space, rate):
-    """Return the next face that a particle reaches: (time, 2 axis + side).
-
-    The face is a face of the particle's box or of the container.
+    """Return the next face that a particle reaches: (time, 2 axis + side). The face is a face of the
+    particle's box or of the container.
     """
     flight, at = particles.flights[i], particles.predictions[i].box
     growth = space.margin * flight.radius * rate
@@ -71,9 +70,8 @@ def next_face(particles, i, boxes, space, rate):
 
 @inner_helper
 def box_near(boxes, at, n, space):
-    """Return one of the 27 boxes around a box, and the displacement (3,) of its image.
-
-    The box is -1 if it does not exist.
+    """Return one of the 27 boxes around a box, and the displacement (3,) of its image. The box is -1 if it
+    does not exist.
 
     at : (3,), coordinates of the central box
     n : number of the neighbour
@@ -140,9 +138,8 @@ def start(particles, queue, boxes, space, rate):
 
 @inner_kernel
 def meet_face(particles, i, face, time, boxes, space, rate):
-    """Move a particle into the next box, or reflect its growing surface at a wall.
-
-    Returns True if its flight has changed.
+    """Move a particle into the next box, or reflect its growing surface at a wall. Returns True if its flight
+    has changed.
     """
     flights, predictions = particles.flights, particles.predictions
     axis, upper = face // 2, face % 2
@@ -212,9 +209,8 @@ def run(particles, queue, boxes, space, tally, rate, stop, most):
 
 @kernel
 def closest(particles, boxes, space):
-    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, at equal times.
-
-    If there are no such pairs, it is inf.
+    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, at equal times. If there are no
+    such pairs, it is inf.
     """
     flights = particles.flights
     least = inf

@@ -53,9 +53,8 @@ def speed_before(flights, i, impulses):
 
 @inner_helper
 def speed_on_arrival(flights, i, time, model, gravity, impulses):
-    """Return the velocity along the axis at a later time; 0 without a tally.
-
-    The particle need not have been advanced to that time.
+    """Return the velocity along the axis at a later time; 0 without a tally. The particle need not have been
+    advanced to that time.
     """
     if impulses is not None:
         axis = impulses.axis
@@ -104,12 +103,10 @@ def nearest(gap: Lanes, length: ir.Value) -> Lanes:
 
 @intrinsic
 def separate(typingctx, flights, i, first, listed, vector, space, separations):
-    """Compute distances and projections for particle i and eight listed particles.
-
-    The eight particles are listed from index `first`, and particle i is at the time of its clock.
-    separations[0] becomes the distance r, by the nearest image in a periodic space. separations[1] becomes
-    r.v / |r|^d, with a vector v (d,) and r pointing from the other particle to i; it is NaN at a distance of
-    0.
+    """Compute distances and projections for particle i and eight listed particles. The eight particles are
+    listed from index `first`, and particle i is at the time of its clock. separations[0] becomes the distance
+    r, by the nearest image in a periodic space. separations[1] becomes r.v / |r|^d, with a vector v (d,) and
+    r pointing from the other particle to i; it is NaN at a distance of 0.
     """
 
     def generate(context, builder, signature, arguments):
@@ -183,9 +180,8 @@ def note_velocity(flights, i, pairs):
 
 @inner_helper
 def tally_pairs(particles, i, j, queue, boxes, model, tally, pairs):
-    """Add the contribution of a collision of particles i and j to the pairs.
-
-    The velocity of i before the collision was stored by `note_velocity`.
+    """Add the contribution of a collision of particles i and j to the pairs. The velocity of i before the
+    collision was stored by `note_velocity`.
     """
     if pairs is not None:
         mass = mass_of(i, model.masses, model.law)
@@ -229,9 +225,8 @@ def _add_contact(flights, i, j, mass, space, pairs):
 
 @inner_helper
 def _add_listed(flights, i, j, count, factor, space, pairs):
-    """Add `factor` times the contribution of the impulse for pairs of i with listed particles.
-
-    Particle i itself and its collision partner j are excluded.
+    """Add `factor` times the contribution of the impulse for pairs of i with listed particles. Particle i
+    itself and its collision partner j are excluded.
     """
     for n in range(uint64(WIDTH)):
         pairs.listed[count + n] = i
@@ -284,9 +279,8 @@ def _list_cell(cell, count, boxes, pairs, lists):
 
 @inner_helper
 def _reach(furthest, lists):
-    """Return the largest distance of the cell of a particle within a given distance.
-
-    A particle in a neighbour list has moved by at most a margin from its cell.
+    """Return the largest distance of the cell of a particle within a given distance. A particle in a
+    neighbour list has moved by at most a margin from its cell.
     """
     if lists is None:
         return furthest * _SLACK
@@ -295,9 +289,8 @@ def _reach(furthest, lists):
 
 @inner_helper
 def _span(x, reach, count, per_length):
-    """Return first and end of the cells along an axis within a distance of x.
-
-    The numbers continue beyond the container.
+    """Return first and end of the cells along an axis within a distance of x. The numbers continue beyond the
+    container.
     """
     low, end = int64(floor((x - reach) * per_length)), int64(floor((x + reach) * per_length)) + 1
     if end - low >= count:
@@ -307,9 +300,8 @@ def _span(x, reach, count, per_length):
 
 @inner_helper
 def _gap_square(x, cell, span, count, per_length):
-    """Return the squared distance between x and a cell along an axis.
-
-    It is 0 if all cells are within reach.
+    """Return the squared distance between x and a cell along an axis. It is 0 if all cells are
+    within reach.
     """
     if span[1] - span[0] >= count:
         return 0.0

@@ -50,11 +50,10 @@ def _lies(flights, i, space, gravity):
 
 @kernel
 def find_resting(flights, before, time, most, model, marks):
-    """Mark (3, N) particles that touch others, particles that move, and particles at rest.
-
-    A particle touches others if it has lasting contacts. A particle moves if it is farther than `most` from
-    its position in `before` (N, d), which is then updated. A particle is at rest if it does not move, and
-    either touches others or lies on a wall.
+    """Mark (3, N) particles that touch others, particles that move, and particles at rest. A particle touches
+    others if it has lasting contacts. A particle moves if it is farther than `most` from its position in
+    `before` (N, d), which is then updated. A particle is at rest if it does not move, and either touches
+    others or lies on a wall.
     """
     space, gravity, duration = model.space, model.gravity, model.law.duration
     for i in range(len(flights)):
@@ -138,9 +137,8 @@ def join(flights, order, positions, axis, reach, space, parent):
 
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
-    """Fix the particles of each tree in which all particles rest and some touch others.
-
-    Returns True if there are any such trees.
+    """Fix the particles of each tree in which all particles rest and some touch others. Returns True if there
+    are any such trees.
 
     order : particles
     marks : (3, N), see `find_resting`; overwritten with marks of the trees
@@ -236,9 +234,8 @@ def _free_if_moved(i, j, rr, rv, gravity, law, duration):
 
 @inner_helper
 def pressed_particle(flights, i, j, law):
-    """Return the particle that is pressed by the jam of the other particle, or NONE.
-
-    The two particles have been advanced to their contact.
+    """Return the particle that is pressed by the jam of the other particle, or NONE. The two particles have
+    been advanced to their contact.
     """
     if law is not None:
         return _pressed_particle(flights, i, j, law, law.duration)
@@ -353,10 +350,8 @@ def _is_stable(flights, n, largest, line, limits, model, stays):
 
 @kernel
 def keep_stable(flights, line, limits, model, marks):
-    """Remove the mark HELD of particles in a line that are not supported in their positions.
-
-    Supports are the other marked particles, fixed particles and walls. The search is repeated until no mark
-    changes.
+    """Remove the mark HELD of particles in a line that are not supported in their positions. Supports are the
+    other marked particles, fixed particles and walls. The search is repeated until no mark changes.
     """
     stays, held, largest, changed = marks[STAYS], marks[HELD], 0.0, True
     for i in line.order:
@@ -384,9 +379,8 @@ def free_unstable(flights, time, marks, model):
 
 @kernel
 def jam(flights, order, time, marks, parent, model, tally):
-    """Fix the particles (M,) of each tree that has a pressed or already fixed particle.
-
-    Returns True if there are any new ones.
+    """Fix the particles (M,) of each tree that has a pressed or already fixed particle. Returns True if there
+    are any new ones.
     """
     pressed, duration, any_new = marks[PRESSED], model.law.duration, False
     for i in order:

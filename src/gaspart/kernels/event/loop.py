@@ -45,19 +45,17 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 
 @inner_helper
 def without_obstacles(model):
-    """Return the model without obstacles.
-
-    Functions of contacts are then compiled once, not once per kind of obstacle.
+    """Return the model without obstacles. Functions of contacts are then compiled once, not once per kind of
+    obstacle.
     """
     return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear, None)
 
 
 @inner_helper
 def meet_obstacle(particles, i, face, time, model, tally):
-    """Process the hit of a particle at a face, a well's edge, or an interior wall.
-
-    Returns -1 minus the number of the face or wall, and True if this is an event of the model. It is not an
-    event of the model at a periodic face, or if the particle leaves a wall along which it has slid.
+    """Process the hit of a particle at a face, a well's edge, or an interior wall. Returns -1 minus the
+    number of the face or wall, and True if this is an event of the model. It is not an event of the model at
+    a periodic face, or if the particle leaves a wall along which it has slid.
     """
     bare = without_obstacles(model)
     before = speed_on_arrival(particles.flights, i, time, bare, model.gravity, tally.impulses)
@@ -110,9 +108,8 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
 
 @inner_helper
 def leave_box(particles, i, face, time, boxes, space, tally, lists):
-    """Move a particle into the next box, or renew its neighbour list.
-
-    Returns the step (3,) into the next box, 0 without a step.
+    """Move a particle into the next box, or renew its neighbour list. Returns the step (3,) into the next
+    box, 0 without a step.
     """
     if lists is not None:
         renew(particles.flights, i, time, lists, space, tally)
@@ -143,11 +140,9 @@ def empty_place(particles, i, boxes, faces):
 
 @inner_helper
 def process(particles, i, time, queue, boxes, model, tally):
-    """Process the next event of a particle.
-
-    Returns two values. The first are its two particles, or a particle and -1 minus the number of a face. The
-    second is True for an event of the model, and False for crossings of boxes or periodic faces and for
-    outdated contacts.
+    """Process the next event of a particle. Returns two values. The first are its two particles, or a
+    particle and -1 minus the number of a face. The second is True for an event of the model, and False for
+    crossings of boxes or periodic faces and for outdated contacts.
     """
     predictions = particles.predictions
     face = int64(predictions[i].face)
@@ -197,9 +192,8 @@ def process_first(particles, event, boxes, model, tally):
 
 @inner_helper
 def fetch_ahead(particles, queue, boxes, next_bucket, lists):
-    """Prefetch the next events' data if the inner processor caches do not hold all particles.
-
-    Returns the next bucket to prefetch for.
+    """Prefetch the next events' data if the inner processor caches do not hold all particles. Returns the
+    next bucket to prefetch for.
     """
     if lists is not None:
         if len(particles.flights) > CACHED_LISTS:
@@ -211,10 +205,8 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
-    """Process events up to a time or a number of events.
-
-    Returns (reason, number of events, number of crossings and outdated contacts, time of the last event or
-    crossing).
+    """Process events up to a time or a number of events. Returns (reason, number of events, number of
+    crossings and outdated contacts, time of the last event or crossing).
 
     limits : (3,), time, maximum number of events (collisions, wall hits, attempts to enter), and maximum
         number of crossings and outdated contacts

@@ -31,9 +31,8 @@ LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("slot", "u4")], align=T
 
 
 def page_dtype(dimension: int) -> np.dtype:
-    """Return the data type of a page: WIDTH entries of a cell in two cache lines.
-
-    A page contains the centres and the numbers of the particles.
+    """Return the data type of a page: WIDTH entries of a cell in two cache lines. A page contains the centres
+    and the numbers of the particles.
     """
     return np.dtype(
         {
@@ -204,9 +203,8 @@ def list_cell(lists, i, point, cell, offset, image, both):
 
 @inner_helper
 def list_row(lists, i, point, first, offset, image, both):
-    """List near particles in three consecutive cells, which usually have one page each.
-
-    All three cells are processed in one loop, because processors predict the ends of many short loops badly.
+    """List near particles in three consecutive cells, which usually have one page each. All three cells are
+    processed in one loop, because processors predict the ends of many short loops badly.
     """
     if lists.per_cell > 1:
         for cell in range(first, first + uint64(3)):
@@ -329,10 +327,8 @@ def next_renewal(flights, i, lists):
 
 @inner_helper
 def is_renewed_first(i, time, lists, space, faces):
-    """Return True if a list is renewed before its particle can reach a face.
-
-    The renewal is at `time`, which must be finite. All faces must be at rest and farther from the centre than
-    a margin.
+    """Return True if a list is renewed before its particle can reach a face. The renewal is at `time`, which
+    must be finite. All faces must be at rest and farther from the centre than a margin.
     """
     if lists is None or faces is not None:
         return False

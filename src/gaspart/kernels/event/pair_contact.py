@@ -33,9 +33,8 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def least_parting(flights, i, j, space, gravity, law):
-    """Return the minimum separation speed of two touching particles; 0 if nothing presses them.
-
-    Both particles have been advanced to the present time.
+    """Return the minimum separation speed of two touching particles; 0 if nothing presses them. Both
+    particles have been advanced to the present time.
     """
     if gravity is not None:
         if law is not None:
@@ -95,9 +94,8 @@ def _part_pressed(flights, i, j, least, space, tally, law, duration):
 
 @inner_helper
 def release_pair(flights, i, j, model, tally, gravity, law):
-    """Release two particles after their collision, unless one rests below a fixed particle.
-
-    The full gravity acts on released particles.
+    """Release two particles after their collision, unless one rests below a fixed particle. The full gravity
+    acts on released particles.
     """
     if gravity is not None:
         _release_from(flights, i, j, model, tally, gravity, law)
@@ -113,9 +111,8 @@ def _release_from(flights, i, j, model, tally, gravity, law):
 
 @inner_helper
 def _rests_below(flights, i, j, space, tally, gravity, law):
-    """Put the first of two particles to rest in the wedge below a fixed second particle.
-
-    Returns True if it rests between its support and the second particle.
+    """Put the first of two particles to rest in the wedge below a fixed second particle. Returns True if it
+    rests between its support and the second particle.
     """
     if law is not None:
         if law.inverse_mass[j] == 0.0:
@@ -297,10 +294,8 @@ def has_collapsed(collapse, i, time):
 
 @inner_helper
 def collapse_detected(i, j, time, faces, collapse):
-    """Return True if an event exceeds the allowed number of contacts of its particles.
-
-    The event is a contact of i and j, or of i with an interior wall. Hits of the container's `faces` do not
-    count.
+    """Return True if an event exceeds the allowed number of contacts of its particles. The event is a contact
+    of i and j, or of i with an interior wall. Hits of the container's `faces` do not count.
     """
     if collapse is None:
         return False

@@ -54,9 +54,8 @@ def near(x, y, z, widths, square):
 
 @inner_helper
 def newly_near(x, y, z, crossed, widths, square):
-    """Return True if boxes are near now but were not before a step `crossed` (3,).
-
-    Without a step, all near boxes count. The step leads into another box.
+    """Return True if boxes are near now but were not before a step `crossed` (3,). Without a step, all near
+    boxes count. The step leads into another box.
     """
     all_new = crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0
     return near(x, y, z, widths, square) and (
@@ -112,9 +111,8 @@ def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversize
 
 @inner_helper
 def span(here, n, width, square, periodic):
-    """Return the first and last coordinate of boxes along an axis that may be near.
-
-    On a periodic axis the coordinates continue beyond the container.
+    """Return the first and last coordinate of boxes along an axis that may be near. On a periodic axis the
+    coordinates continue beyond the container.
     """
     steps = int(sqrt(square) / width) + 2
     if periodic:
@@ -194,9 +192,8 @@ NOT_CROSSED = (int64(0), int64(0), int64(0))
 
 @inner_helper
 def without_contacts(model):
-    """Return the model without the parts that are used only at contacts.
-
-    Predictions do not depend on these parts.
+    """Return the model without the parts that are used only at contacts. Predictions do not depend on these
+    parts.
     """
     obstacles = model.faces, model.walls, model.oversized
     return Model(model.space, None, model.gravity, None, *obstacles, model.shear, None)
@@ -229,9 +226,8 @@ def predict_face(particles, i, boxes, model, now):
 
 @inner_helper
 def predict_meeting(particles, i, boxes, model, tally, number, crossed):
-    """Predict the next contact of a particle.
-
-    If the particle has just crossed into the next box, only new neighbours of this box are searched.
+    """Predict the next contact of a particle. If the particle has just crossed into the next box, only new
+    neighbours of this box are searched.
 
     number : number of the present event
     crossed : (3,), step into the present box, or 0
@@ -265,9 +261,8 @@ def sort_all(predictions, boxes, faces, lists):
 
 @kernel
 def begin(particles, queue, boxes, model, tally, now, anew):
-    """Make the lists of the boxes, and the queue of all predictions.
-
-    Neighbour lists must already exist. If `anew` is False, the predictions come from a checkpoint.
+    """Make the lists of the boxes, and the queue of all predictions. Neighbour lists must already exist. If
+    `anew` is False, the predictions come from a checkpoint.
     """
     sort_all(particles.predictions, boxes, model.faces, boxes.lists)
     for i in range(len(particles.flights)):

@@ -26,18 +26,16 @@ _FETCHED = 2  # number of entries of a box whose particles are fetched; few boxe
 
 @inner_helper
 def steps(side, is_one):
-    """Return the first step and the end (0..3) of the boxes to search along an axis.
-
-    These are all boxes, the boxes on one side, or the only existing box.
+    """Return the first step and the end (0..3) of the boxes to search along an axis. These are all boxes, the
+    boxes on one side, or the only existing box.
     """
     return (uint64(1 + side), uint64(2 + side)) if side or is_one else (uint64(0), uint64(3))
 
 
 @inner_helper
 def fetch_about(flights, boxes, at, side, members):
-    """Fetch the lists of the boxes around a box, or with `members` their particles.
-
-    The particles are fetched after the lists have arrived.
+    """Fetch the lists of the boxes around a box, or with `members` their particles. The particles are fetched
+    after the lists have arrived.
 
     at : (3,), coordinates of the box
     side : (3,), -1 or 1 for an axis along which only boxes on this side are fetched, otherwise 0
@@ -77,10 +75,9 @@ def crossing_of(face):
 
 @inner_helper
 def next_search(predictions, i):
-    """Return the box (3,) and the side (3,) of the next search of a particle.
-
-    The search is around this box. The side is nonzero for the axis along which the particle crosses into the
-    next box; only boxes on that side are searched.
+    """Return the box (3,) and the side (3,) of the next search of a particle. The search is around this box.
+    The side is nonzero for the axis along which the particle crosses into the next box; only boxes on that
+    side are searched.
     """
     at, face = predictions[i].box, int64(predictions[i].face)
     side = _BOTH
@@ -91,10 +88,9 @@ def next_search(predictions, i):
 
 @inner_helper
 def fetch_predictions(predictions, queue, bucket):
-    """Fetch the predictions of particles in three buckets.
-
-    They are the third particle of a bucket, the second of a later bucket, and the first of a still later one.
-    Each is found from the predictions of the preceding particle.
+    """Fetch the predictions of particles in three buckets. They are the third particle of a bucket, the
+    second of a later bucket, and the first of a still later one. Each is found from the predictions of the
+    preceding particle.
     """
     head, mask = queue.head, len(queue.head) - 2
     first = head[(bucket + 2 * _STRIDE) & mask]
@@ -130,10 +126,8 @@ def fetch_list(flights, lists, i):
 
 @inner_helper
 def fetch_renewal(flights, lists, i, time):
-    """Fetch the data for the renewal of a particle's list at a time.
-
-    These are the lists of the particles in the list, and the cells around the position of the particle at
-    that time.
+    """Fetch the data for the renewal of a particle's list at a time. These are the lists of the particles in
+    the list, and the cells around the position of the particle at that time.
     """
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):

@@ -60,12 +60,10 @@ def is_outdated(predictions, i):
 
 @inner_helper
 def tie(predictions, i):
-    """Return the key that orders simultaneous events.
-
-    Faces come first, in the order of particles, then pairs in the order of the lower and the higher index. No
-    two predictions have the same key, although both particles of a pair may predict their contact. If one of
-    the two is outdated, their order determines how much is searched. It must not depend on the order in a
-    bucket.
+    """Return the key that orders simultaneous events. Faces come first, in the order of particles, then pairs
+    in the order of the lower and the higher index. No two predictions have the same key, although both
+    particles of a pair may predict their contact. If one of the two is outdated, their order determines how
+    much is searched. It must not depend on the order in a bucket.
     """
     if predictions[i].face_time <= predictions[i].contact_time:
         return i - len(predictions)
@@ -75,9 +73,8 @@ def tie(predictions, i):
 
 @inner_helper
 def bucket_of(queue, predictions, i):
-    """Return the bucket for the time of a particle's next event.
-
-    It is at least the current bucket. Beyond the horizon it is the overflow bucket.
+    """Return the bucket for the time of a particle's next event. It is at least the current bucket. Beyond
+    the horizon it is the overflow bucket.
     """
     buckets = len(queue.head) - 1
     current = queue.cursor[BUCKET]
@@ -103,10 +100,8 @@ def _link(queue, predictions, i):
 
 @inner_helper
 def _unlink(queue, predictions, i):
-    """Remove a particle from its bucket.
-
-    If the particle has no neighbour, its own unused entry is written instead, so that there is no branch for
-    the processor to predict.
+    """Remove a particle from its bucket. If the particle has no neighbour, its own unused entry is written
+    instead, so that there is no branch for the processor to predict.
     """
     bucket = np.int64(predictions[i].bucket)
     after, before = np.int64(predictions[i].after), np.int64(predictions[i].before)
@@ -176,9 +171,8 @@ def _recall_overflow(queue, predictions):
 
 @inner_kernel
 def _leap(queue, predictions):
-    """Advance to the first event of the overflow; return False if there are no events.
-
-    All other buckets must be empty.
+    """Advance to the first event of the overflow; return False if there are no events. All other buckets must
+    be empty.
     """
     first = np.inf
     i = np.int64(queue.head[len(queue.head) - 1])
@@ -201,9 +195,8 @@ def _is_before(predictions, i, j):
 
 @inner_kernel
 def _merge(predictions, head, other_head):
-    """Merge two sorted lists of particles; return the first particle.
-
-    The lists are linked by `after` and end with -1.
+    """Merge two sorted lists of particles; return the first particle. The lists are linked by `after` and end
+    with -1.
     """
     first = last = np.int64(-1)
     while head >= 0 or other_head >= 0:
@@ -235,9 +228,8 @@ def _cut(predictions, first, count):
 
 @inner_kernel
 def _sort(predictions, first, count):
-    """Sort a list of `count` particles; return the first particle.
-
-    The list is linked by `after` and ends with -1.
+    """Sort a list of `count` particles; return the first particle. The list is linked by `after` and ends
+    with -1.
     """
     length = 1
     while length < count:
@@ -260,9 +252,8 @@ def _sort(predictions, first, count):
 
 @inner_kernel
 def _add_run(queue, predictions, count):
-    """Sort the first `count` particles of the current bucket into a run.
-
-    Following runs that are at most twice as long are merged into it.
+    """Sort the first `count` particles of the current bucket into a run. Following runs that are at most
+    twice as long are merged into it.
     """
     bucket = queue.cursor[BUCKET] & (len(queue.head) - 2)
     runs, run, end = queue.cursor[RUNS], np.int64(-1), np.int64(-1)

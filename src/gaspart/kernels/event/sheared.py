@@ -26,10 +26,8 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_kernel
 def _search_row(particles, i, row, image, boxes, space, tally, shear):
-    """Search the images above (1) or below (-1) of a row of boxes.
-
-    The boxes have the coordinate `row` across the flow, and are neighbours of the particle's box along the
-    third axis.
+    """Search the images above (1) or below (-1) of a row of boxes. The boxes have the coordinate `row` across
+    the flow, and are neighbours of the particle's box along the third axis.
     """
     flights, predictions = particles.flights, particles.predictions
     depth = predictions[i].box[2]
@@ -68,9 +66,8 @@ def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
 
 @inner_helper
 def search_sheared(particles, i, boxes, space, tally, crossed, shear):
-    """Predict the contact with a particle across a sheared face, if it is the earliest.
-
-    `boxes.find_contact` explains the arguments.
+    """Predict the contact with a particle across a sheared face, if it is the earliest. `boxes.find_contact`
+    explains the arguments.
     """
     if shear is not None:
         _search_sheared(particles, i, boxes, space, tally, crossed, shear)
@@ -93,9 +90,8 @@ def follow(particles, i, axis, boxes, shear):
 
 @inner_helper
 def unfold(flights, i, j, time, space, shear):
-    """Move the second particle of a contact across a sheared face to its image.
-
-    It is the image next to the first particle. Returns 1 if the image is above, -1 if below, and 0 otherwise.
+    """Move the second particle of a contact across a sheared face to its image. It is the image next to the
+    first particle. Returns 1 if the image is above, -1 if below, and 0 otherwise.
     """
     if shear is None:
         return 0
@@ -126,9 +122,8 @@ def _unfold(flights, i, j, time, space, shear):
 
 @inner_helper
 def fold(flights, j, image, model, tally, shear):
-    """Move the second particle back, and add the energy that the faces receive.
-
-    The change of its velocity is the same as for its image, but the change of its energy differs.
+    """Move the second particle back, and add the energy that the faces receive. The change of its velocity is
+    the same as for its image, but the change of its energy differs.
     """
     if shear is not None:
         _fold(flights, j, image, model, tally, shear)

@@ -60,10 +60,9 @@ def advance_flight(x: Lanes, v: Lanes, pull: Lanes | None, late: Lanes) -> tuple
 
 
 def bring_to_start(particle: list[Lanes], clocks: Lanes, pull: list) -> tuple[Lanes, list[tuple]]:
-    """Return the later clock of a particle and each of eight others, and its flight then.
-
-    The flight consists of coordinates and velocities, under an acceleration `pull` (d,). If no other clock is
-    later than its own, these values are already known; this is the case just after its event.
+    """Return the later clock of a particle and each of eight others, and its flight then. The flight consists
+    of coordinates and velocities, under an acceleration `pull` (d,). If no other clock is later than its own,
+    these values are already known; this is the case just after its event.
     """
     builder, d = clocks.builder, len(pull)
     clock = particle[2 * d]
@@ -86,10 +85,9 @@ def bring_to_start(particle: list[Lanes], clocks: Lanes, pull: list) -> tuple[La
 def contact_times(
     particle: list[Lanes], other: list[Lanes], images: list, lengths: list, pull: list
 ) -> Lanes:
-    """Return the contact times of one particle and eight others in images (d,) of a container.
-
-    This is `flight.time_of_contact` for columns of rows. All particles fall with the same acceleration `pull`
-    (d,), or do not fall without it.
+    """Return the contact times of one particle and eight others in images (d,) of a container. This is
+    `flight.time_of_contact` for columns of rows. All particles fall with the same acceleration `pull` (d,),
+    or do not fall without it.
 
     lengths : (d,), side lengths of the container
     """
@@ -167,9 +165,8 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
 
 
 def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, Lanes, list[ir.Value]]:
-    """Load eight candidates, and their numbers as a vector and as scalars.
-
-    The scalars are loaded separately because the vector units of the processor are busy.
+    """Load eight candidates, and their numbers as a vector and as scalars. The scalars are loaded separately
+    because the vector units of the processor are busy.
     """
     mask, numbers = (1 << NUMBER_BITS) - 1, []
     for n in range(WIDTH):
@@ -183,10 +180,9 @@ def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, La
 
 @intrinsic
 def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
-    """Return the earliest contact of a particle with candidates, if it is earlier than `present`.
-
-    The result is (time, partner, bits). A bit is set for each candidate whose contact was not computed,
-    because it or the particle may not fall, see `flight.mark_resting`.
+    """Return the earliest contact of a particle with candidates, if it is earlier than `present`. The result
+    is (time, partner, bits). A bit is set for each candidate whose contact was not computed, because it or
+    the particle may not fall, see `flight.mark_resting`.
 
     span : first candidate and number of candidates
     present : time and partner of the earliest contact so far
@@ -241,11 +237,9 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
 
 @intrinsic
 def nearer(typingctx, pages, page, point, offset, square):
-    """Return a bit for each of the WIDTH points of a page near a point.
-
-    A point is near if the square of its distance is below `square`. The arithmetic is in single precision,
-    and the result does not depend on the order of the two points. `neighbour_lists.page_dtype` describes the
-    page.
+    """Return a bit for each of the WIDTH points of a page near a point. A point is near if the square of its
+    distance is below `square`. The arithmetic is in single precision, and the result does not depend on the
+    order of the two points. `neighbour_lists.page_dtype` describes the page.
 
     point : (3,)
     offset : (3,), displacement of the page
@@ -277,9 +271,8 @@ def nearer(typingctx, pages, page, point, offset, square):
 
 @intrinsic
 def equal(typingctx, numbers, start, number, mask):
-    """Return a bit for each of 2 WIDTH numbers that equals `number` after masking.
-
-    The numbers are 32-bit words of an array, beginning at `start`; only the bits in `mask` are compared.
+    """Return a bit for each of 2 WIDTH numbers that equals `number` after masking. The numbers are 32-bit
+    words of an array, beginning at `start`; only the bits in `mask` are compared.
     """
 
     def generate(context, builder, signature, arguments):
@@ -304,9 +297,8 @@ def equal(typingctx, numbers, start, number, mask):
 
 @intrinsic
 def list_box(typingctx, candidates, count, members, box, image):
-    """Write all entries of a box, in an image, into `candidates`.
-
-    Unused entries are written, too. Writing begins at index `count`.
+    """Write all entries of a box, in an image, into `candidates`. Unused entries are written, too. Writing
+    begins at index `count`.
     """
 
     def generate(context, builder, signature, arguments):

@@ -58,10 +58,8 @@ RULES = {
 
 @inner_helper
 def plane_of(particles, i, axis, upper, boxes, space, oversized):
-    """Return the lower or upper face of a particle's box along an axis.
-
-    The result is (coordinate for the particle's centre, face code). A wall stops an oversized particle some
-    boxes before the last box.
+    """Return the lower or upper face of a particle's box along an axis. The result is (coordinate for the
+    particle's centre, face code). A wall stops an oversized particle some boxes before the last box.
     """
     flights = particles.flights
     at = particles.predictions[i].box[axis]
@@ -79,11 +77,9 @@ def plane_of(particles, i, axis, upper, boxes, space, oversized):
 
 @inner_helper
 def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
-    """Return the next face or edge of a well that a particle reaches: (time, face code).
-
-    The face is a face of the particle's box or of the container. A falling particle may cross a face of a
-    box, turn, and cross it again in the same flight. `now` determines which of these crossings are in the
-    past.
+    """Return the next face or edge of a well that a particle reaches: (time, face code). The face is a face
+    of the particle's box or of the container. A falling particle may cross a face of a box, turn, and cross
+    it again in the same flight. `now` determines which of these crossings are in the past.
     """
     flights = particles.flights
     soon = inf
@@ -124,12 +120,10 @@ def next_face(particles, i, boxes, space, now, gravity, faces, oversized):
 
 @inner_kernel
 def next_face_pulled(particles, i, axis, pull, boxes, space, now, oversized):
-    """Return the next face along an axis with an acceleration: (time, face code).
-
-    A particle that moves against the acceleration can leave only through the face ahead until it turns, and
-    after that only through the face in the direction of the acceleration. So no face is crossed twice in the
-    same direction. This is the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into
-    an endless loop.
+    """Return the next face along an axis with an acceleration: (time, face code). A particle that moves
+    against the acceleration can leave only through the face ahead until it turns, and after that only through
+    the face in the direction of the acceleration. So no face is crossed twice in the same direction. This is
+    the rule of Spencer 2022, section 2.1.2, in a form that rounding cannot turn into an endless loop.
     """
     flight = particles.flights[i]
     x, clock = flight.position[axis], flight.clock
@@ -192,9 +186,8 @@ def reflect(flights, i, face, model, tally, law, faces):
 
 @inner_kernel
 def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
-    """Put a particle that slides down an interior wall to rest at a face.
-
-    It then rests on both the wall and the face. If the face is not hard, the particle is released instead.
+    """Put a particle that slides down an interior wall to rest at a face. It then rests on both the wall and
+    the face. If the face is not hard, the particle is released instead.
     """
     if support is None:
         return
@@ -211,9 +204,8 @@ def rest_on_face(flights, i, face, hard, model, tally, gravity, support):
 
 @inner_helper
 def rest_after(flights, i, face, hard, model, tally, gravity):
-    """Put a particle to rest if its bounce is too short for the clocks to resolve.
-
-    Otherwise the bounce would be repeated forever.
+    """Put a particle to rest if its bounce is too short for the clocks to resolve. Otherwise the bounce would
+    be repeated forever.
     """
     if gravity is not None:
         axis = face // 2
@@ -227,9 +219,8 @@ def rest_after(flights, i, face, hard, model, tally, gravity):
 
 @inner_helper
 def place_at(flights, i, face, space, faces):
-    """Place a particle exactly at the face that it has reached.
-
-    If the face moves, the particle may be anywhere in the container.
+    """Place a particle exactly at the face that it has reached. If the face moves, the particle may be
+    anywhere in the container.
     """
     axis, upper = face // 2, face % 2 == 1
     plane = face_plane(flights, i, axis, upper, space)
@@ -242,10 +233,7 @@ def place_at(flights, i, face, space, faces):
 
 @inner_helper
 def meet_face(particles, i, face, time, model, tally, faces):
-    """Reflect a particle at a wall, or move it to the opposite periodic face.
-
-    Returns True for a wall.
-    """
+    """Reflect a particle at a wall, or move it to the opposite periodic face. Returns True for a wall."""
     flights, space = particles.flights, model.space
     axis = face // 2
     upper = face % 2 == 1

@@ -65,9 +65,8 @@ def time_to_point(r, v, g, radius):
 
 @inner_kernel
 def time_to_edge(r, v, g, length, radius):
-    """Return the time until a sphere touches an edge.
-
-    A falling sphere may touch the line next to the edge, leave it, and touch it again at the edge.
+    """Return the time until a sphere touches an edge. A falling sphere may touch the line next to the edge,
+    leave it, and touch it again at the edge.
 
     r, v, g : (3,), separation, velocity and acceleration; the first two components are across the line, the
         third component is along the line, measured from its start
@@ -138,9 +137,8 @@ def time_to_plate(flights, i, rows, m, space, gravity):
 
 @inner_kernel
 def time_to_segment(flights, i, rows, m, space, gravity):
-    """Return the time at which a disc touches a segment; inf if it does not.
-
-    The contact is on a side (Spencer 2022, Eqs. 3-12) or at an end.
+    """Return the time at which a disc touches a segment; inf if it does not. The contact is on a side
+    (Spencer 2022, Eqs. 3-12) or at an end.
     """
     radius = flights[i].radius
     ux, uy, length = rows[m].direction[0], rows[m].direction[1], rows[m].length
@@ -193,9 +191,8 @@ def time_to_wall(flights, i, rows, m, space, gravity, lengths):
 
 @inner_kernel
 def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
-    """Return the next wall near the box of a particle that it hits: (time, row).
-
-    Without a hit before `face_time` the result is (face_time, -1).
+    """Return the next wall near the box of a particle that it hits: (time, row). Without a hit before
+    `face_time` the result is (face_time, -1).
     """
     box = box_of(predictions, boxes, i)
     if flights[i].radius > walls.largest_radius:
@@ -231,9 +228,8 @@ def mass_in(masses, i):
 
 @inner_helper
 def coordinate_along(flights, i, row, edge, lengths):
-    """Return the coordinate of a particle along an edge of a wall.
-
-    The result is (coordinate of the centre, length, unit vector of the edge).
+    """Return the coordinate of a particle along an edge of a wall. The result is (coordinate of the centre,
+    length, unit vector of the edge).
     """
     p = flights[i].position
     if len(lengths) == 2:
@@ -266,10 +262,7 @@ def leave_wall(flights, i, row, space):
 
 @inner_helper
 def leaves(flights, i, m, space, walls, gravity):
-    """Return True if a particle that has slid along a wall leaves it.
-
-    Such a particle is released.
-    """
+    """Return True if a particle that has slid along a wall leaves it. Such a particle is released."""
     if gravity is None:
         return False
     if is_resting_on(gravity.support, i, m):
@@ -310,9 +303,8 @@ def bounce_off(flights, i, normal, model, tally, law):
 
 @inner_kernel
 def collide_wall(flights, i, m, model, tally, walls, law):
-    """Reflect a particle at an interior wall, or draw a velocity from the wall's temperature.
-
-    The particle touches the wall at a side or at the rim. Returns the number of the wall.
+    """Reflect a particle at an interior wall, or draw a velocity from the wall's temperature. The particle
+    touches the wall at a side or at the rim. Returns the number of the wall.
     """
     space = model.space
     x, y, z = to_wall(walls.rows, m, flights[i].position, space.lengths)
@@ -340,9 +332,8 @@ def collide_interior(flights, i, m, model, tally, walls, moving):
 
 @inner_helper
 def meet_wall(flights, i, face, time, model, tally, walls):
-    """Advance a particle to an interior wall and reflect it; return the number of the wall.
-
-    Returns NONE if the particle has slid along the wall and leaves it.
+    """Advance a particle to an interior wall and reflect it; return the number of the wall. Returns NONE if
+    the particle has slid along the wall and leaves it.
     """
     if walls is not None:
         advance(flights, i, time, model.space, model.gravity)

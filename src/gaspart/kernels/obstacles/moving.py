@@ -77,9 +77,8 @@ def next_piston(particles, i, space, piston):
 
 @inner_helper
 def find_piston(particles, i, axis, space, piston):
-    """Return (time, face code) of the contact with a piston across an axis.
-
-    The time is inf if there is no piston across this axis.
+    """Return (time, face code) of the contact with a piston across an axis. The time is inf if there is no
+    piston across this axis.
     """
     if piston is None:
         return inf, NONE
@@ -100,10 +99,9 @@ def advance_piston(motion, push, time):
 
 @inner_kernel
 def collide_with_piston(flights, i, face, model, tally, piston):
-    """Exchange momentum between a particle and the piston without loss.
-
-    Their separation speed is large enough for the clocks to resolve the next contact. This adds a small push,
-    which a piston needs that lies on a particle at rest.
+    """Exchange momentum between a particle and the piston without loss. Their separation speed is large
+    enough for the clocks to resolve the next contact. This adds a small push, which a piston needs that lies
+    on a particle at rest.
     """
     axis, inwards = face // 2, -1.0 if face % 2 else 1.0
     motion = piston.motion
@@ -171,10 +169,8 @@ def find_moving(flights, i, moving, time, face):
 
 @inner_kernel
 def collide_moving_wall(flights, i, model, tally, moving):
-    """Exchange momentum between a particle and the wall without loss.
-
-    Their separation speed exceeds rounding errors; otherwise they would collide forever. Returns the number
-    of the wall, counted after the faces.
+    """Exchange momentum between a particle and the wall without loss. Their separation speed exceeds rounding
+    errors; otherwise they would collide forever. Returns the number of the wall, counted after the faces.
     """
     axis, side, motion = moving.axis, moving.side[i], moving.motion
     advance_wall(motion, flights[i].clock)
@@ -200,9 +196,8 @@ def collide_moving_wall(flights, i, model, tally, moving):
 
 @inner_helper
 def bounce(flights, i, face, model, tally, law):
-    """Reflect a particle at a hard face, by the collision law if there is one.
-
-    Returns the momentum given to the face.
+    """Reflect a particle at a hard face, by the collision law if there is one. Returns the momentum given to
+    the face.
     """
     axis = face // 2
     if law is None:
@@ -240,9 +235,8 @@ def time_to_sawtooth(gap, closing, pull, duration):
 
 @inner_helper
 def time_to_sine(gap, closing, most):
-    """Return a time before which a particle cannot touch a face, and if it touches now.
-
-    The time is the root for the largest acceleration `most` of their approach.
+    """Return a time before which a particle cannot touch a face, and if it touches now. The time is the root
+    for the largest acceleration `most` of their approach.
     """
     if gap <= 0.0 and closing > 0.0:
         return 0.0, True
@@ -253,15 +247,13 @@ def time_to_sine(gap, closing, most):
 
 @kernel
 def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
-    """Return the time until a particle hits a vibrating face; inf if it does not.
-
-    At the contact the two must approach each other. The result is also inf if there is no contact before the
-    end of the epoch, because all events are predicted again in the next epoch. Without this limit, a particle
-    that approaches the stroke at 1e-16 of its former speed would be searched for in 1e16 periods, whose
-    phases depend on rounding. Above the stroke the particle flies to the stroke without a search. Within the
-    stroke, each step of the search ends before the first contact, for any motion of the face, so no contact
-    is missed. With the largest acceleration of the face, the steps converge quadratically to the contact,
-    like Newton's method.
+    """Return the time until a particle hits a vibrating face; inf if it does not. At the contact the two must
+    approach each other. The result is also inf if there is no contact before the end of the epoch, because
+    all events are predicted again in the next epoch. Without this limit, a particle that approaches the
+    stroke at 1e-16 of its former speed would be searched for in 1e16 periods, whose phases depend on
+    rounding. Above the stroke the particle flies to the stroke without a search. Within the stroke, each step
+    of the search ends before the first contact, for any motion of the face, so no contact is missed. With the
+    largest acceleration of the face, the steps converge quadratically to the contact, like Newton's method.
 
     x, v, a : height, inward velocity and acceleration of the particle
     clocks : time since the start of the epoch, and length of the epoch, at the time of x and v
@@ -344,10 +336,9 @@ def find_vibrating(particles, i, axis, boxes, space, gravity, motion):
 
 @inner_kernel
 def collide_vibrating(flights, i, face, model, tally, law, motion):
-    """Reflect a particle in the rest frame of a vibrating face.
-
-    The work of the face is its velocity multiplied by the transferred momentum. The separation speed is large
-    enough for the clocks to resolve the next contact. The energy of this small push is also counted.
+    """Reflect a particle in the rest frame of a vibrating face. The work of the face is its velocity
+    multiplied by the transferred momentum. The separation speed is large enough for the clocks to resolve the
+    next contact. The energy of this small push is also counted.
     """
     axis, period = face // 2, motion.period[face]
     inwards = -1.0 if face % 2 else 1.0

@@ -86,9 +86,8 @@ def schedule_next(time, random_bits, reservoirs):
 
 @inner_helper
 def words_of_attempt(reservoirs):
-    """Return four random words of the next attempt.
-
-    They determine the time to the attempt after it, the face, and the position on the face.
+    """Return four random words of the next attempt. They determine the time to the attempt after it, the
+    face, and the position on the face.
     """
     return random_words(reservoirs.key, _PLACE, reservoirs.number[0], 0)
 

@@ -33,9 +33,8 @@ def dot(a, b):
 
 @inner_helper
 def is_resting_on(support, i, row):
-    """Return True if a particle rests on, or slides along, the wall with this row.
-
-    The wall is an interior wall.
+    """Return True if a particle rests on, or slides along, the wall with this row. The wall is an interior
+    wall.
     """
     if support is None:
         return False
@@ -47,9 +46,8 @@ def is_resting_on(support, i, row):
 
 @inner_helper
 def rests_on(i, row, gravity):
-    """Return True if a particle rests on, or slides along, the wall with this row.
-
-    Without gravity the result is False.
+    """Return True if a particle rests on, or slides along, the wall with this row. Without gravity the result
+    is False.
     """
     if gravity is None:
         return False
@@ -81,10 +79,9 @@ def within(support, i, planes, vector, dimension):
 
 @inner_kernel
 def leave_of(acceleration, support, i, dimension):
-    """Compute the acceleration that the planes of a particle leave; return its square.
-
-    It is the largest projection of the `acceleration` (3,) on one or two planes that leads into no plane;
-    without such a projection it is zero.
+    """Compute the acceleration that the planes of a particle leave; return its square. It is the largest
+    projection of the `acceleration` (3,) on one or two planes that leads into no plane; without such a
+    projection it is zero.
     """
     least = _INTO * sqrt(dot(acceleration, acceleration))
     best, pull = 0.0, support.pull[i]
@@ -103,9 +100,8 @@ def leave_of(acceleration, support, i, dimension):
 
 @inner_kernel
 def find_pull(gravity, i, dimension):
-    """Compute the part of gravity that the planes of a particle leave.
-
-    Planes from which it leads away are removed.
+    """Compute the part of gravity that the planes of a particle leave. Planes from which it leads away are
+    removed.
     """
     support = gravity.support
     acceleration = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
@@ -123,9 +119,8 @@ def find_pull(gravity, i, dimension):
 
 @inner_helper
 def add_plane(flights, i, normal, row, space, support):
-    """Add the plane that a particle touches in the direction of a unit vector (3,).
-
-    A fourth plane replaces the third.
+    """Add the plane that a particle touches in the direction of a unit vector (3,). A fourth plane replaces
+    the third.
     """
     n = min(support.number[i], 2)
     support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2] = (
@@ -142,9 +137,8 @@ def add_plane(flights, i, normal, row, space, support):
 
 @inner_helper
 def lies_on_floor(flights, i, axis, space, gravity, longest):
-    """Return True if a particle lies on a face of the container along an axis.
-
-    It also lies there if its bounce is at most as long as the longest bounce that counts as rest.
+    """Return True if a particle lies on a face of the container along an axis. It also lies there if its
+    bounce is at most as long as the longest bounce that counts as rest.
     """
     if axis >= len(space.lengths) or space.periodic[axis]:
         return False
@@ -167,10 +161,8 @@ def add_floors(flights, i, space, gravity, longest):
 
 @inner_kernel
 def pressing(flights, i, normal, space, gravity, longest):
-    """Return the acceleration of a particle in the direction of a unit vector (3,).
-
-    It is the component of gravity. If this leads away, it is the part that the floors below the particle
-    leave.
+    """Return the acceleration of a particle in the direction of a unit vector (3,). It is the component of
+    gravity. If this leads away, it is the part that the floors below the particle leave.
     """
     if gravity.support.number[i] > 0:
         return dot(normal, gravity.support.pull[i])
@@ -184,9 +176,8 @@ def pressing(flights, i, normal, space, gravity, longest):
 
 @inner_kernel
 def release(flights, i, space, support):
-    """Remove the support of a particle, so that the full gravity acts on it.
-
-    The particle is placed exactly at the walls on which it rested.
+    """Remove the support of a particle, so that the full gravity acts on it. The particle is placed exactly
+    at the walls on which it rested.
     """
     if support is None:
         return
@@ -247,10 +238,9 @@ def fastest_at_rest(gravity, longest, support):
 
 @inner_kernel
 def come_to_rest_again(flights, i, longest, space, gravity, support):
-    """Return the velocity of a bounced particle that comes to rest again on its support.
-
-    The result is (velocity (3,), number of planes into which it led, normal (3,) of the last such plane). The
-    number is 0 without such planes, or if the particle is fast enough to bounce on them as well.
+    """Return the velocity of a bounced particle that comes to rest again on its support. The result is
+    (velocity (3,), number of planes into which it led, normal (3,) of the last such plane). The number is 0
+    without such planes, or if the particle is fast enough to bounce on them as well.
     """
     w, normal, number = velocity_of(flights, i, space), (0.0, 0.0, 0.0), 0
     planes, fastest = count_planes(support, i), fastest_at_rest(gravity, longest, support)
@@ -273,10 +263,9 @@ def come_to_rest_again(flights, i, longest, space, gravity, support):
 
 @inner_kernel
 def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
-    """Put a particle to rest in a wedge after a bounce; return True if it rests.
-
-    It rests between its support and the obstacle of the bounce, which is in the direction of the unit vector
-    `normal` (3,), if it would hit the obstacle again at once.
+    """Put a particle to rest in a wedge after a bounce; return True if it rests. It rests between its support
+    and the obstacle of the bounce, which is in the direction of the unit vector `normal` (3,), if it would
+    hit the obstacle again at once.
 
     particle : its mass, and the longest bounce that counts as rest
     """
@@ -312,9 +301,8 @@ _HOP = 2.0**20  # shortest bounce where a particle cannot rest, in units of `sho
 
 @inner_kernel
 def come_to_rest(flights, i, normal, contact, mass, space, tally, gravity):
-    """Put a particle to rest after a bounce that is too short to be resolved.
-
-    If the particle cannot rest there, its bounce is made long enough to be resolved.
+    """Put a particle to rest after a bounce that is too short to be resolved. If the particle cannot rest
+    there, its bounce is made long enough to be resolved.
 
     normal : (3,), unit vector towards the wall
     contact : row of the wall, True if it is touched at an end (where only a balanced particle can rest), and

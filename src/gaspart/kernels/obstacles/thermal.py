@@ -28,9 +28,8 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def mirrors(i, face, number, key, accommodation):
-    """Return True if a face reflects a particle specularly at this hit (Maxwell's model).
-
-    The decision uses a random word of block 0; `flux_speed` uses another word of this block.
+    """Return True if a face reflects a particle specularly at this hit (Maxwell's model). The decision uses a
+    random word of block 0; `flux_speed` uses another word of this block.
 
     number : number of the hit
     """
@@ -141,9 +140,8 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
 
 @inner_helper
 def leave_warm(flights, i, wall, normal, model, tally, law, warm):
-    """Give a particle the velocity with which it leaves an interior wall with a temperature.
-
-    Returns the momentum given to the wall along the normal, or -1 if the wall is hard.
+    """Give a particle the velocity with which it leaves an interior wall with a temperature. Returns the
+    momentum given to the wall along the normal, or -1 if the wall is hard.
 
     normal : (3,), unit vector towards the wall
     """
@@ -179,9 +177,8 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
 
 @inner_helper
 def tangents(normal, dimension):
-    """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,).
-
-    In two dimensions the first vector is in the plane.
+    """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,). In two
+    dimensions the first vector is in the plane.
     """
     x, y, z = normal
     if dimension == 2:
@@ -235,9 +232,8 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def is_held(flights, i, axis, masses, law, faces, sticky):
-    """Return True if a particle sticks to a face across an axis.
-
-    Then the face absorbs its velocity along this axis.
+    """Return True if a particle sticks to a face across an axis. Then the face absorbs its velocity along
+    this axis.
     """
     side = faces.well_side[i, axis]
     face = 2 * axis + (1 if side > 0 else 0)
@@ -258,10 +254,9 @@ def mobility_of(i, masses, law):
 
 @inner_helper
 def lose_rounding(flights, i, axis, least, space, sticky):
-    """Remove a velocity of at most `least` with which a particle would hit its sticky face.
-
-    Such a velocity is a rounding error that remains if the particle has transferred its whole velocity to
-    another particle; it must not cause a hit.
+    """Remove a velocity of at most `least` with which a particle would hit its sticky face. Such a velocity
+    is a rounding error that remains if the particle has transferred its whole velocity to another particle;
+    it must not cause a hit.
     """
     v = flights[i].velocity[axis]
     upper = v > 0.0
@@ -306,10 +301,8 @@ def _part_if_held(flights, i, j, model, faces, sticky):
 
 @inner_helper
 def part_if_held(flights, i, j, model, faces):
-    """Separate two particles that have collided if one of them sticks to a face.
-
-    If they would collide again, they get a separation speed of the order of rounding errors. Such a speed
-    must not lead towards a face.
+    """Separate two particles that have collided if one of them sticks to a face. If they would collide again,
+    they get a separation speed of the order of rounding errors. Such a speed must not lead towards a face.
     """
     if faces is not None:
         _part_if_held(flights, i, j, model, faces, faces.sticky)
@@ -328,10 +321,8 @@ def edge_plane(flights, i, face, space, faces):
 
 @inner_kernel
 def time_to_edge(flights, i, axis, space, faces):
-    """Return the next edge of a well along an axis: (time, face code).
-
-    For a particle stuck to a face, the result is its clock time and the face. The particle is tested again,
-    because a contact has moved it.
+    """Return the next edge of a well along an axis: (time, face code). For a particle stuck to a face, the
+    result is its clock time and the face. The particle is tested again, because a contact has moved it.
     """
     v = flights[i].velocity[axis]
     clock = flights[i].clock
@@ -348,9 +339,8 @@ def time_to_edge(flights, i, axis, space, faces):
 
 @inner_helper
 def cross_edge(flights, i, face, model, tally, law, faces):
-    """Move a particle into a well, or out of it if it is fast enough.
-
-    The wall receives the momentum change.
+    """Move a particle into a well, or out of it if it is fast enough. The wall receives the momentum
+    change.
     """
     axis = face // 2
     flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
@@ -379,9 +369,8 @@ def collide_edge(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def meet_edge(flights, i, face, time, model, tally, faces):
-    """Advance a particle to the edge of a well, where it crosses or is reflected.
-
-    Returns the number of the face.
+    """Advance a particle to the edge of a well, where it crosses or is reflected. Returns the number of the
+    face.
     """
     if faces is not None:
         advance(flights, i, time, model.space, model.gravity)

@@ -21,10 +21,9 @@ def advance_coordinate(x, v, pull, time):
 
 @helper
 def time_against(gap, speed, pull):
-    """Return the time to cross `gap` at `speed` >= 0 against a deceleration `pull` > 0.
-
-    This is the smaller root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14); inf if the
-    particle turns before it has crossed the gap.
+    """Return the time to cross `gap` at `speed` >= 0 against a deceleration `pull` > 0. This is the smaller
+    root of pull t^2 / 2 - speed t + gap = 0 (Spencer 2022, Eqs. 12 and 14); inf if the particle turns before
+    it has crossed the gap.
     """
     if gap <= 0.0:
         return 0.0
@@ -36,11 +35,9 @@ def time_against(gap, speed, pull):
 
 @helper
 def time_along(gap, speed, pull):
-    """Return the time to cross a `gap` in the direction of an acceleration `pull` > 0.
-
-    This is the larger root of gap - speed t - pull t^2 / 2 = 0. If rounding leaves the gap closed (< 0) at
-    the turning point, as for a particle that has just left a floor, the result is the time of the turning
-    point.
+    """Return the time to cross a `gap` in the direction of an acceleration `pull` > 0. This is the larger
+    root of gap - speed t - pull t^2 / 2 = 0. If rounding leaves the gap closed (< 0) at the turning point, as
+    for a particle that has just left a floor, the result is the time of the turning point.
 
     speed : initial speed; negative if directed away from the end of the gap
     """
@@ -72,10 +69,8 @@ def time_to_side(gap, closing, pull):
 
 @inner_helper
 def time_to_far_side(gap, closing, pull):
-    """Return the time until a particle touches the opposite side of a line, or inf.
-
-    The gap is negative. The particle must pass the line, turn and come back. `time_to_side` explains the
-    arguments.
+    """Return the time until a particle touches the opposite side of a line, or inf. The gap is negative. The
+    particle must pass the line, turn and come back. `time_to_side` explains the arguments.
     """
     if closing >= 0.0 or pull <= 0.0:
         return inf
@@ -90,9 +85,8 @@ def _polynomial(c0, c1, c2, c3, c4, t):
 
 @inner_helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
-    """Find a root of a quartic between `low` and `high`, where its signs differ.
-
-    The method is Newton's method safeguarded by bisection.
+    """Find a root of a quartic between `low` and `high`, where its signs differ. The method is Newton's
+    method safeguarded by bisection.
     """
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
     t = 0.5 * (low + high)
@@ -116,12 +110,11 @@ def _root_between(c0, c1, c2, c3, c4, low, high):
 
 @kernel
 def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
-    """Return the time until two particles touch; inf if they never do.
-
-    Their separation is r + v t + a t^2 / 2; gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa =
-    a.a > 0. The result is the first time at which they touch or overlap and approach each other. The quartic
-    f(t) = |r(t)|^2 - sigma^2 is examined between the roots of its derivative, and the derivative between the
-    roots of the second derivative, so that no grazing contact is missed.
+    """Return the time until two particles touch; inf if they never do. Their separation is r + v t + a t^2 /
+    2; gap = r.r - sigma^2, rv = r.v, vv = v.v, ra = r.a, va = v.a, aa = a.a > 0. The result is the first time
+    at which they touch or overlap and approach each other. The quartic f(t) = |r(t)|^2 - sigma^2 is examined
+    between the roots of its derivative, and the derivative between the roots of the second derivative, so
+    that no grazing contact is missed.
     """
     c0, c1, c2, c3, c4 = gap, 2.0 * rv, vv + ra, va, 0.25 * aa
     # f'' = 2 c2 + 6 c3 t + 12 c4 t^2 divides time into intervals in which f' is monotonic
@@ -165,7 +158,6 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
 @kernel
 def time_of_summit(rv, vv, ra, va, aa):
     """Return the time of the largest distance between two approaches; inf for a single approach.
-
     `time_to_contact_pulled` explains the arguments.
     """
     c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa

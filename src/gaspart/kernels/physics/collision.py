@@ -27,9 +27,8 @@ LEAST = 2.0**-48  # minimum separation speed / speed: less would let rounding re
 
 @inner_helper
 def gap_along(flights, i, j, axis, space):
-    """Return the separation of two particles along an axis, for the nearest image.
-
-    Along a third axis in two dimensions it is 0.
+    """Return the separation of two particles along an axis, for the nearest image. Along a third axis in two
+    dimensions it is 0.
     """
     if axis >= len(space.lengths):
         return 0.0
@@ -71,11 +70,10 @@ def fastest_component(flights, i, space):
 
 @inner_helper
 def least_speed(flights, i, space):
-    """Return the minimum separation speed of a particle from a wall.
-
-    This speed is the speed of the particle multiplied by the rounding error of the direction to the wall. The
-    error of the direction is the rounding error of positions divided by the radius. With a lower separation
-    speed the particle would hit the wall forever.
+    """Return the minimum separation speed of a particle from a wall. This speed is the speed of the particle
+    multiplied by the rounding error of the direction to the wall. The error of the direction is the rounding
+    error of positions divided by the radius. With a lower separation speed the particle would hit the wall
+    forever.
     """
     longest = flights[i].radius
     for k in range(len(space.lengths)):
@@ -124,9 +122,8 @@ def slip(velocity, spin, normal):
 
 @inner_helper
 def lose(approach, mobility, normal, usual, law, tally):
-    """Count the energy dissipated by the normal part of a collision with this restitution.
-
-    The additional energy that the `usual` restitution would have dissipated is counted separately.
+    """Count the energy dissipated by the normal part of a collision with this restitution. The additional
+    energy that the `usual` restitution would have dissipated is counted separately.
     """
     add(tally.sums, LOSS, 0.5 * (1.0 - normal * normal) * approach * approach / mobility)
     keep(0.5 * (normal * normal - usual * usual) * approach * approach / mobility, law.duration)
@@ -163,11 +160,10 @@ def add_spin(flights, i, normal, impulse, law):
 
 @inner_kernel
 def exchange_with_vibration(i, j, approach, mobility, vibrations):
-    """Exchange the normal energy of two particles with the energy of a vibrational mode.
-
-    The mode belongs to one of the particles. The exchange conserves the measure v dv dE, where v is the
-    normal speed and E the vibrational energy, and is reversible in time. Returns the separation speed, or -1
-    if neither particle has a mode.
+    """Exchange the normal energy of two particles with the energy of a vibrational mode. The mode belongs to
+    one of the particles. The exchange conserves the measure v dv dE, where v is the normal speed and E the
+    vibrational energy, and is reversible in time. Returns the separation speed, or -1 if neither particle has
+    a mode.
     """
     if vibrations is None:
         return -1.0
@@ -220,9 +216,8 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
 
 @inner_kernel
 def collide_wall_by_law(flights, i, normal, least, space, tally, law):
-    """Apply the collision law to a particle at a wall (Spencer 2022, Eq. 40).
-
-    Returns the momentum given to the wall along the normal.
+    """Apply the collision law to a particle at a wall (Spencer 2022, Eq. 40). Returns the momentum given to
+    the wall along the normal.
 
     normal : (3,), unit vector towards the wall
     least : minimum separation speed
@@ -247,9 +242,8 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
 
 @inner_helper
 def is_fixed(i, law, duration):
-    """Return True if a particle is fixed.
-
-    A particle fixed by a jam has no mobility, but does not count as fixed.
+    """Return True if a particle is fixed. A particle fixed by a jam has no mobility, but does not count as
+    fixed.
     """
     if duration is not None:
         return duration.inverse_mass[i] == 0.0
@@ -266,9 +260,8 @@ def meets_fixed(i, j, law):
 
 @inner_helper
 def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
-    """Apply the collision law to a pair in contact; return |r . dp|.
-
-    Without a law the collision is elastic.
+    """Apply the collision law to a pair in contact; return |r . dp|. Without a law the collision is
+    elastic.
     """
     if law is None:
         return collide_smooth(flights, i, j, rr, rv, model.space, model.masses)

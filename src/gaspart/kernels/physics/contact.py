@@ -17,12 +17,11 @@ from gaspart.kernels.physics.running_sum import add
 
 @helper
 def contact_root(rr, rv, vv, ss):
-    """Return the time of first touch for a pair on a collision course (rv < 0).
-
-    This is the smaller root of vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b +
-    sqrt(b^2 - ac)) (from Spencer 2022, Eq. 19; Eq. 21 as printed is half of it). For a pair that already
-    overlaps, the root is negative: its absolute value is the time since the pair touched, by which the
-    time-stepped engine moves the pair back.
+    """Return the time of first touch for a pair on a collision course (rv < 0). This is the smaller root of
+    vv t^2 + 2 rv t + (rr - ss) = 0, in the form without cancellation t = c/(-b + sqrt(b^2 - ac)) (from
+    Spencer 2022, Eq. 19; Eq. 21 as printed is half of it). For a pair that already overlaps, the root is
+    negative: its absolute value is the time since the pair touched, by which the time-stepped engine moves
+    the pair back.
     """
     c = rr - ss
     return c / (sqrt(rv * rv - vv * c) - rv)
@@ -30,11 +29,9 @@ def contact_root(rr, rv, vv, ss):
 
 @helper
 def time_to_contact(rr, rv, vv, ss):
-    """Return the time until a pair touches; inf if it never does.
-
-    For a pair that touches or overlaps, and approaches, the result is 0. Such a pair must collide
-    immediately, because overlap due to rounding must never grow (Bannerman, Strobl, Formella & Poeschel,
-    Comput. Part. Mech. 1, 191 (2014)).
+    """Return the time until a pair touches; inf if it never does. For a pair that touches or overlaps, and
+    approaches, the result is 0. Such a pair must collide immediately, because overlap due to rounding must
+    never grow (Bannerman, Strobl, Formella & Poeschel, Comput. Part. Mech. 1, 191 (2014)).
     """
     c = rr - ss
     if not ((rv < 0.0) & (rv * rv >= vv * c)):  # a single branch, which is nearly always taken
@@ -46,20 +43,18 @@ def time_to_contact(rr, rv, vv, ss):
 
 @helper
 def exchange_equal(rr, rv):
-    """Return the factor k of an elastic contact of equal masses.
-
-    The velocities change by v1 += k r, v2 -= k r. The factor is computed with the true r.r instead of
-    sigma^2, so that the energy is conserved in spite of the error of the contact.
+    """Return the factor k of an elastic contact of equal masses. The velocities change by v1 += k r, v2 -= k
+    r. The factor is computed with the true r.r instead of sigma^2, so that the energy is conserved in spite
+    of the error of the contact.
     """
     return rv / rr
 
 
 @helper
 def exchange(rr, rv, mass1, mass2):
-    """Return the factors k1, k2 of an elastic contact.
-
-    The velocities change by v1 += k1 r, v2 -= k2 r. This is Spencer 2022, Eq. 39, for smooth particles,
-    written with 2 m2/(m1 + m2), so that no mass is lost for any mass ratio.
+    """Return the factors k1, k2 of an elastic contact. The velocities change by v1 += k1 r, v2 -= k2 r. This
+    is Spencer 2022, Eq. 39, for smooth particles, written with 2 m2/(m1 + m2), so that no mass is lost for
+    any mass ratio.
     """
     k = rv / rr
     total = mass1 + mass2
@@ -68,10 +63,9 @@ def exchange(rr, rv, mass1, mass2):
 
 @inner_helper
 def normal_change(approach, restitution, least):
-    """Return the change of the normal relative velocity in a collision.
-
-    The collision changes the normal velocity from `approach` to -restitution * approach (Spencer 2022, Eq.
-    35), or to -least if this is a higher separation speed.
+    """Return the change of the normal relative velocity in a collision. The collision changes the normal
+    velocity from `approach` to -restitution * approach (Spencer 2022, Eq. 35), or to -least if this is a
+    higher separation speed.
     """
     return approach + max(restitution * approach, least)
 
@@ -97,11 +91,10 @@ def time_to_plane(x, v, plane):
 
 @helper
 def time_to_growing_contact(rr, rv, vv, sigma, rate):
-    """Return the time until two growing particles touch; inf if they never do.
-
-    The distance at contact is sigma + rate t. The result is the first root of a t^2 + 2 b t + c, a = vv -
-    rate^2, in the form without cancellation (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)). It is
-    0 for a pair that touches or overlaps, and approaches.
+    """Return the time until two growing particles touch; inf if they never do. The distance at contact is
+    sigma + rate t. The result is the first root of a t^2 + 2 b t + c, a = vv - rate^2, in the form without
+    cancellation (Lubachevsky & Stillinger, J. Stat. Phys. 60, 561 (1990)). It is 0 for a pair that touches or
+    overlaps, and approaches.
     """
     a = vv - rate * rate
     b = rv - sigma * rate
@@ -132,9 +125,8 @@ _STEPS = 6  # number of steps of Newton's method to reach rounding errors
 
 @helper
 def fifth_root(value):
-    """Compute the fifth root of a number that is not negative, to 4e-16.
-
-    Only +, -, x and / are used, so the bits are the same on every machine.
+    """Compute the fifth root of a number that is not negative, to 4e-16. Only +, -, x and / are used, so the
+    bits are the same on every machine.
     """
     if not value > 0.0:
         return 0.0
@@ -196,9 +188,8 @@ def _elastic(duration):
 
 @inner_helper
 def restitution_of_pair(flights, i, j, normal, law, duration):
-    """Return the (normal, tangential) restitution of a contact of two particles.
-
-    The particles have been advanced to the contact.
+    """Return the (normal, tangential) restitution of a contact of two particles. The particles have been
+    advanced to the contact.
 
     normal : restitution from the law alone
     """
@@ -220,7 +211,6 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
 @inner_helper
 def restitution_at_wall(flights, i, normal, law, duration):
     """Return the (normal, tangential) restitution of a contact of a particle and a wall.
-
     `restitution_of_pair` explains the arguments.
     """
     if duration is not None:
@@ -242,9 +232,8 @@ def keep(energy, duration):
 
 @inner_helper
 def meet_often(flights, i, j, duration):
-    """Return True if contacts of both particles are far more frequent than under gravity alone.
-
-    The particles have been advanced to the present time. Gravity alone may press particles together.
+    """Return True if contacts of both particles are far more frequent than under gravity alone. The particles
+    have been advanced to the present time. Gravity alone may press particles together.
     """
     late = flights[i].clock - min(duration.latest[i], duration.latest[j])
     return late < SHORTEST * SHORTEST * duration.length
@@ -252,8 +241,7 @@ def meet_often(flights, i, j, duration):
 
 @inner_helper
 def is_alone(flights, i, duration):
-    """Return True if a particle has had no contact with another one for the contact duration.
-
-    The particle has been advanced to the present time.
+    """Return True if a particle has had no contact with another one for the contact duration. The particle
+    has been advanced to the present time.
     """
     return flights[i].clock - duration.met[i] >= duration.length

@@ -82,9 +82,8 @@ def _two_sum(a, b):
 
 @kernel
 def join(parts, total):
-    """Set total (K, WIDTH) to the sum of parts (threads, K, WIDTH), with carries.
-
-    Afterwards the digits depend only on the value of the sum.
+    """Set total (K, WIDTH) to the sum of parts (threads, K, WIDTH), with carries. Afterwards the digits
+    depend only on the value of the sum.
     """
     total[...] = 0
     for part in range(parts.shape[0]):
@@ -97,9 +96,8 @@ def join(parts, total):
 
 @kernel
 def evaluate(sums, units, values):
-    """Set values (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten.
-
-    A value consists of the nearest float64 and the remainder, with a relative accuracy of 2^-64.
+    """Set values (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten. A value consists of
+    the nearest float64 and the remainder, with a relative accuracy of 2^-64.
 
     units : `UNITS`
     """

@@ -15,9 +15,8 @@ from gaspart.kernels.physics.contact import time_to_contact
 
 @inner_helper
 def face_plane(flights, i, axis, upper, space):
-    """Return the coordinate at which a face of the container stops the centre of a particle.
-
-    On a periodic axis the centre crosses the face there.
+    """Return the coordinate at which a face of the container stops the centre of a particle. On a periodic
+    axis the centre crosses the face there.
     """
     inset = 0.0 if space.periodic[axis] else space.margin * flights[i].radius
     return space.lengths[axis] - inset if upper else inset
@@ -41,10 +40,9 @@ def remaining_pull(support, i, axis):
 
 @inner_helper
 def acceleration_of(flights, i, axis, space, gravity):
-    """Return the acceleration of a particle along an axis.
-
-    The acceleration is 0 if the particle is fixed, or lies at rest on the face below. For a particle on
-    walls, it is the part of gravity that the walls do not support.
+    """Return the acceleration of a particle along an axis. The acceleration is 0 if the particle is fixed, or
+    lies at rest on the face below. For a particle on walls, it is the part of gravity that the walls do not
+    support.
     """
     if is_supported(gravity.support, i) and not gravity.fixed[i]:
         return remaining_pull(gravity.support, i, axis)
@@ -62,10 +60,8 @@ def acceleration_of(flights, i, axis, space, gravity):
 
 @inner_helper
 def mark_resting(flights, i, space, gravity, resting):
-    """Mark in `resting` (N,) particles that may not be accelerated.
-
-    A particle is marked if it is fixed, supported, or does not move along an axis with gravity (see
-    `acceleration_of`).
+    """Mark in `resting` (N,) particles that may not be accelerated. A particle is marked if it is fixed,
+    supported, or does not move along an axis with gravity (see `acceleration_of`).
     """
     if gravity is not None:
         rests = gravity.fixed[i] | is_supported(gravity.support, i)
@@ -107,10 +103,8 @@ def restart_clocks(flights, time, space, gravity):
 
 @inner_helper
 def encounter(flights, i, j, offset, space, gravity):
-    """Return time and invariants of two particles at the later of their clocks.
-
-    The invariants are the products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and
-    acceleration a.
+    """Return time and invariants of two particles at the later of their clocks. The invariants are the
+    products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and acceleration a.
 
     offset : (d,), displacement of particle j
     """
@@ -169,9 +163,8 @@ def time_of_contact(flights, i, j, offset, space, gravity):
 
 @inner_helper
 def row_of(i, row):
-    """Return the row of sums for a particle.
-
-    `row` (N,) contains the rows of the particles, or equals None if there is a single row.
+    """Return the row of sums for a particle. `row` (N,) contains the rows of the particles, or equals None if
+    there is a single row.
     """
     if row is None:
         return 0
@@ -180,10 +173,9 @@ def row_of(i, row):
 
 @inner_helper
 def bin_at(position, bins):
-    """Return the bin of a position, and the fraction of the bin below the position.
-
-    The position is in units of bins. A position outside the range of the bins is assigned to the nearest bin,
-    and the fraction is computed by the same linear formula.
+    """Return the bin of a position, and the fraction of the bin below the position. The position is in units
+    of bins. A position outside the range of the bins is assigned to the nearest bin, and the fraction is
+    computed by the same linear formula.
     """
     bin_ = min(max(np.int64(position), 0), bins - 1)
     return bin_, position - bin_

@@ -20,9 +20,8 @@ UPPER_FACE = 2 * GRADIENT + 1
 
 @inner_helper
 def displacement(time, shear):
-    """Return the displacement of the images above at a clock time.
-
-    The displacement is reduced modulo the length of the container.
+    """Return the displacement of the images above at a clock time. The displacement is reduced modulo the
+    length of the container.
     """
     return shear.origin[0] + shear.velocity * time
 
@@ -35,9 +34,8 @@ def flow_at(y, space, shear):
 
 @inner_kernel
 def cross_sheared(particles, i, upper, mass, space, tally, shear):
-    """Give a particle at a sheared face the position and velocity of its image that enters.
-
-    The energy that the particle loses is tallied as energy given to the face.
+    """Give a particle at a sheared face the position and velocity of its image that enters. The energy that
+    the particle loses is tallied as energy given to the face.
     """
     flights, side, length = particles.flights, 1.0 if upper else -1.0, space.lengths[FLOW]
     x = flights[i].position[FLOW] - side * displacement(flights[i].clock, shear)
@@ -61,12 +59,11 @@ def shift_image(particles, i, axis, upper, model, tally, shear):
 
 @inner_kernel
 def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
-    """Return the time at which two particles touch across a sheared face, or inf.
-
-    Particle j is in the images above (`image` 1) or below (-1), in any of the images along the flow. No image
-    is touched before the distance of the centres across the flow equals the contact distance. At that time
-    only the nearest image and the next arriving image matter. Either the contact is with one of them, which
-    is still at this distance when it passes, or there is no contact.
+    """Return the time at which two particles touch across a sheared face, or inf. Particle j is in the images
+    above (`image` 1) or below (-1), in any of the images along the flow. No image is touched before the
+    distance of the centres across the flow equals the contact distance. At that time only the nearest image
+    and the next arriving image matter. Either the contact is with one of them, which is still at this
+    distance when it passes, or there is no contact.
 
     offset : displacement of the image along a third axis
     """

@@ -23,9 +23,8 @@ class PerArea(NamedTuple):
 
 @inner_helper
 def velocity_before(flights, i, per_area):
-    """Return the velocity (3,) of a particle; zeros if nothing is summed.
-
-    The third component is 0 in two dimensions.
+    """Return the velocity (3,) of a particle; zeros if nothing is summed. The third component is 0 in two
+    dimensions.
     """
     if per_area is not None:
         velocity = flights[i].velocity

@@ -18,10 +18,9 @@ _COARSE, _FINE = 2.0**-28, 2.0**-57  # units in the largest term; 64 bits hold 2
 
 @inner_helper
 def add(sums, n, x):
-    """Add x to entry n of sums (K, 2), and the rounding error to column 1.
-
-    The rounding errors are exact (Knuth, The Art of Computer Programming 2, 4.2.2). After M additions the
-    error is at most 2^-53 + (M 2^-53)^2 times the sum of all |x|.
+    """Add x to entry n of sums (K, 2), and the rounding error to column 1. The rounding errors are exact
+    (Knuth, The Art of Computer Programming 2, 4.2.2). After M additions the error is at most 2^-53 + (M
+    2^-53)^2 times the sum of all |x|.
     """
     before = sums[n, 0]
     after = before + x
@@ -32,9 +31,8 @@ def add(sums, n, x):
 
 @inner_helper
 def add_whole(sum_, x, largest):
-    """Add x to a sum (2,) of integers, which count a coarse and a fine unit.
-
-    The fine unit counts the remainder.
+    """Add x to a sum (2,) of integers, which count a coarse and a fine unit. The fine unit counts the
+    remainder.
 
     largest : power of two that few terms exceed. So all operations except rint are exact, and the quotient is
         the same for all terms
@@ -51,10 +49,7 @@ def values(sums: np.ndarray) -> np.ndarray:
 
 
 def net(*sums: np.ndarray) -> float:
-    """Return the total of several sums, rounded once.
-
-    If large sums cancel, the remainder is exact.
-    """
+    """Return the total of several sums, rounded once. If large sums cancel, the remainder is exact."""
     return math.fsum(np.concatenate([array.ravel() for array in sums]))
 
 

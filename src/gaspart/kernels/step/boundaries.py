@@ -34,10 +34,8 @@ from gaspart.kernels.step.model import LOSS, VIRIAL
 
 @inner_helper
 def place_and_speed(particles, slot, ago, tally, impulses):
-    """Return the past position of a particle, and its velocity at the end of the step.
-
-    The position is on its present flight. Both are along the axis of the impulses. They are 0 if no impulses
-    are tallied.
+    """Return the past position of a particle, and its velocity at the end of the step. The position is on its
+    present flight. Both are along the axis of the impulses. They are 0 if no impulses are tallied.
 
     ago : time relative to the end of the step, negative
     """
@@ -132,9 +130,8 @@ def is_free(particles, slot, rules):
 
 @inner_kernel
 def gather(particles, slot, rules):
-    """Write the particle in a slot into its flight, with the clock at 0.
-
-    Returns the number of the particle.
+    """Write the particle in a slot into its flight, with the clock at 0. Returns the number of the
+    particle.
     """
     flights, i = rules.flights, np.int64(particles.index[slot])
     for k in range(particles.positions.shape[0]):
@@ -159,11 +156,9 @@ def scatter(particles, slot, rules):
 
 @inner_kernel
 def crossing_time(flights, i, axis, space, faces):
-    """Return when a particle crossed a face or the edge of a well: (time, face code).
-
-    The crossing is along an axis, on the present flight, before the end of the step. Without a crossing the
-    result is (inf, NONE). A particle that is stuck to a face but moves has left its plane at this time, when
-    its release is decided.
+    """Return when a particle crossed a face or the edge of a well: (time, face code). The crossing is along
+    an axis, on the present flight, before the end of the step. Without a crossing the result is (inf, NONE).
+    A particle that is stuck to a face but moves has left its plane at this time, when its release is decided.
     """
     v = flights[i].velocity[axis]
     if v == 0.0:
@@ -183,9 +178,8 @@ def crossing_time(flights, i, axis, space, faces):
 @inner_kernel
 def crossing_time_pulled(flights, i, axis, pull, space, dt):
     """Return the time at which a particle crossed a face under gravity: (time, face code).
-
-    `motion.reflect_falling` has the same formulas. If a contact has pushed a particle out, or if it falls
-    too slowly to resolve its bounces, the time is the end of the step.
+    `motion.reflect_falling` has the same formulas. If a contact has pushed a particle out, or if it falls too
+    slowly to resolve its bounces, the time is the end of the step.
     """
     v = flights[i].velocity[axis]
     for side in range(2):
@@ -205,9 +199,8 @@ def crossing_time_pulled(flights, i, axis, pull, space, dt):
 
 @inner_kernel
 def first_crossing(flights, i, space, dt, faces, gravity):
-    """Return the first of all faces and edges that a particle crossed: (time, face code).
-
-    See `crossing_time`.
+    """Return the first of all faces and edges that a particle crossed: (time, face code). See
+    `crossing_time`.
     """
     first, face = inf, NONE
     for k in range(len(space.lengths)):
@@ -267,10 +260,7 @@ def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
 
 @inner_kernel
 def meet_faces(particles, slot, rules, dt, tally, law):
-    """Process all faces that a particle has crossed, one after another.
-
-    Returns True if there was any.
-    """
+    """Process all faces that a particle has crossed, one after another. Returns True if there was any."""
     i = gather(particles, slot, rules)
     flights, model, met = rules.flights, rules.model, False
     space, gravity, faces = model.space, model.gravity, model.faces
@@ -298,9 +288,8 @@ def meet_faces(particles, slot, rules, dt, tally, law):
 
 @inner_kernel
 def collide_flights(particles, i, j, contact, rules, tally, law):
-    """Apply the collision law to the particles in two slots; return both squared speeds.
-
-    All particles have the same acceleration, so they move uniformly relative to each other.
+    """Apply the collision law to the particles in two slots; return both squared speeds. All particles have
+    the same acceleration, so they move uniformly relative to each other.
 
     contact : time of the contact, negative, and the invariants rr, rv at this time
     """

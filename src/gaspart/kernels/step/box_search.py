@@ -61,9 +61,8 @@ def sort_in(particles, boxes):
 
 @inner_helper
 def gap_squared(particles, slot, boxes, axis, offset, periodic):
-    """Return the squared distance between a particle and the slab of a box along an axis.
-
-    The second of two boxes along a periodic axis is on both sides of the first.
+    """Return the squared distance between a particle and the slab of a box along an axis. The second of two
+    boxes along a periodic axis is on both sides of the first.
 
     offset : position of the box relative to the particle's box (-1, 0, 1)
     """
@@ -92,9 +91,8 @@ def is_out_of_reach(particles, slot, boxes, dx, dy, dz, periodic):
 
 @inner_kernel
 def search_all(particles, i, space, step, overlaps):
-    """Test a particle against all preceding particles; return the number of tests.
-
-    For each block of particles the test is a loop without branches.
+    """Test a particle against all preceding particles; return the number of tests. For each block of
+    particles the test is a loop without branches.
     """
     size = particles.radii[i]
     start = 0
@@ -115,10 +113,7 @@ def search_all(particles, i, space, step, overlaps):
 
 @inner_helper
 def search_list_of_box(particles, i, j, boxes, space, step, overlaps):
-    """Test a particle against slot j and all following slots in its box.
-
-    Returns the number of tests.
-    """
+    """Test a particle against slot j and all following slots in its box. Returns the number of tests."""
     tests = 0
     size = particles.radii[i]
     while j >= 0:
@@ -221,9 +216,8 @@ def find_contacts(particles, search, space, step, overlaps, tally, threads):
 
 @allocating_kernel
 def run_steps(particles, search, model, settings, steps, tally, threads):
-    """Perform a number of steps; for zero steps, only renew an outdated neighbour list.
-
-    Returns the present pairs of the list.
+    """Perform a number of steps; for zero steps, only renew an outdated neighbour list. Returns the present
+    pairs of the list.
 
     settings : length of the steps, True to rewind contacts, and the maximum number of passes
     threads : number of threads, or None for one thread

@@ -82,9 +82,8 @@ class Step(NamedTuple):
 
 
 class StepTally(NamedTuple):
-    """Counters and sums of a run with time steps.
-
-    They are not in nested tuples, because numba does not pass nested tuples to threads.
+    """Counters and sums of a run with time steps. They are not in nested tuples, because numba does not pass
+    nested tuples to threads.
     """
 
     counts: np.ndarray
@@ -119,9 +118,8 @@ class Overlaps(NamedTuple):
 
 @inner_helper
 def part_of(part, parts, count):
-    """Return the first and the last index (exclusive) of an equal slice.
-
-    `count` items are divided into `parts` slices.
+    """Return the first and the last index (exclusive) of an equal slice. `count` items are divided into
+    `parts` slices.
     """
     return part * count // parts, (part + 1) * count // parts
 
@@ -178,9 +176,8 @@ def locate_part(particles, part, cells):
 
 @inner_kernel
 def divide_cells(cells, ordinary, shares):
-    """Divide the cells among threads so that each has about the same number of particles.
-
-    The particle numbers of the last sort are used.
+    """Divide the cells among threads so that each has about the same number of particles. The particle
+    numbers of the last sort are used.
 
     shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
     """
@@ -193,9 +190,8 @@ def divide_cells(cells, ordinary, shares):
 
 @inner_kernel
 def order_part(cells, ordinary, first, end):
-    """Sort the slots in one thread's cells, from `first` to `end`, by cell and number.
-
-    Also find the new end of the slots of each cell.
+    """Sort the slots in one thread's cells, from `first` to `end`, by cell and number. Also find the new end
+    of the slots of each cell.
     """
     ends, order, width = cells.ends[first:end], cells.order, np.uint32(end - first)
     ends[:] = 0

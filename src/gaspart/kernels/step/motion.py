@@ -62,13 +62,11 @@ def reflect(particles, slot, axis, planes, model, tally, thread):
 
 @inner_kernel
 def reflect_falling(particles, slot, axis, planes, pull, dt, tally, thread):
-    """Reflect a particle that left through a wall under gravity.
-
-    The particle is moved back along its parabola to the plane, and continues from there with its speed at the
-    plane. y is the height over the plane, u its rate of change and a the acceleration, all directed inwards.
-    y = u s + a s^2/2 gives the time s since the particle crossed the plane (Spencer 2022, Eq. 14, in the form
-    without cancellation), and w^2 = u^2 - 2 a y its speed there. Bounces that fit into the rest of the step
-    are performed at once.
+    """Reflect a particle that left through a wall under gravity. The particle is moved back along its
+    parabola to the plane, and continues from there with its speed at the plane. y is the height over the
+    plane, u its rate of change and a the acceleration, all directed inwards. y = u s + a s^2/2 gives the time
+    s since the particle crossed the plane (Spencer 2022, Eq. 14, in the form without cancellation), and w^2 =
+    u^2 - 2 a y its speed there. Bounces that fit into the rest of the step are performed at once.
     """
     lower, upper = planes
     x = particles.positions[axis, slot]
@@ -181,9 +179,8 @@ def fly(x, v, lower, upper, dt):
 
 @inner_kernel
 def fall(x, v, pull, lower, upper, dt):
-    """Move particles along one axis, exactly along the parabola of an acceleration.
-
-    Returns the number of particles outside [lower, upper).
+    """Move particles along one axis, exactly along the parabola of an acceleration. Returns the number of
+    particles outside [lower, upper).
     """
     outside = 0
     gain = pull * dt
@@ -259,10 +256,8 @@ def add_gaps(x, origin, length, squares):
 
 @inner_kernel
 def highest(squares, most):
-    """Return the maximum of some values (n,) and `most`.
-
-    Values are compared one by one only if one of them exceeds `most`, because each comparison must wait for
-    the previous one.
+    """Return the maximum of some values (n,) and `most`. Values are compared one by one only if one of them
+    exceeds `most`, because each comparison must wait for the previous one.
     """
     above = 0
     for square in squares:

@@ -59,11 +59,9 @@ def _size(lanes: Lanes) -> Lanes:
 
 @intrinsic
 def nearer(typingctx, positions, radii, space, slot, skin, first):
-    """Return a bit for each of the eight slots starting at `first`.
-
-    The lowest bit belongs to the first slot. A bit is set if the distance between the particle of its slot
-    and the particle in `slot` is below the contact distance plus the skin. `resolve.distance_squared`
-    computes the same distance.
+    """Return a bit for each of the eight slots starting at `first`. The lowest bit belongs to the first slot.
+    A bit is set if the distance between the particle of its slot and the particle in `slot` is below the
+    contact distance plus the skin. `resolve.distance_squared` computes the same distance.
     """
 
     def generate(context, builder, signature, arguments):
@@ -99,9 +97,8 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
 
 @intrinsic
 def equals(typingctx, values, first, value):
-    """Return a bit for each of eight elements that equals a value.
-
-    The lowest bit belongs to the element `first`.
+    """Return a bit for each of eight elements that equals a value. The lowest bit belongs to the element
+    `first`.
     """
 
     def generate(context, builder, signature, arguments):
@@ -119,10 +116,8 @@ def equals(typingctx, values, first, value):
 
 @intrinsic
 def compact_eight(typingctx, words, first, least, kept, number):
-    """Write the words, out of eight, that are at least `least` into `kept`.
-
-    Returns their number. The eight words begin at index `first`. Writing begins at index `number`. There must
-    be space for eight words.
+    """Write the words, out of eight, that are at least `least` into `kept`. Returns their number. The eight
+    words begin at index `first`. Writing begins at index `number`. There must be space for eight words.
     """
 
     def generate(context, builder, signature, arguments):
@@ -177,9 +172,8 @@ def compact(entries, number, pairs, listed):
 
 @inner_helper
 def record_near(particles, slot, others, cells, space, entries, pairs, filled):
-    """Record the slots from others[0] to others[1] that are near a slot, eight per entry.
-
-    A slot is near if its distance is below the contact distance plus the skin.
+    """Record the slots from others[0] to others[1] that are near a slot, eight per entry. A slot is near if
+    its distance is below the contact distance plus the skin.
 
     filled : numbers of entries, and of entries in the list; the new numbers are returned
     """
@@ -200,9 +194,8 @@ def record_near(particles, slot, others, cells, space, entries, pairs, filled):
 
 @inner_helper
 def rows_ahead(dimension):
-    """Return the number of rows of cells with which the particles of a row are paired.
-
-    These are the row itself, and the next rows along the other axes.
+    """Return the number of rows of cells with which the particles of a row are paired. These are the row
+    itself, and the next rows along the other axes.
     """
     return 5 if dimension == 3 else 2
 
@@ -217,12 +210,11 @@ def ahead(cells, n):
 
 @inner_helper
 def find_stretches(slots, n, cells, stretches):
-    """Find the ranges of slots that may contain neighbours in row n, for slots[0] to slots[1].
-
-    The ranges cover the cells in the same column and in the adjacent columns. Nonempty ranges are written
-    into stretches (2, m), as entries without set bits and as the end of the slots. Returns the number of
-    ranges, and the number of candidates. (Testing an empty range takes as long as eight slots, and processors
-    cannot predict which ranges are empty.)
+    """Find the ranges of slots that may contain neighbours in row n, for slots[0] to slots[1]. The ranges
+    cover the cells in the same column and in the adjacent columns. Nonempty ranges are written into stretches
+    (2, m), as entries without set bits and as the end of the slots. Returns the number of ranges, and the
+    number of candidates. (Testing an empty range takes as long as eight slots, and processors cannot predict
+    which ranges are empty.)
     """
     ends = cells.ends
     on = np.uint64(ahead(cells, n))
@@ -248,10 +240,9 @@ def record_stretches(particles, stretches, stop, cells, space, entries, pairs, f
 
 @inner_helper
 def record_across(particles, at, across, cells, space, entries, pairs, filled):
-    """Perform `record_near` for a cell and the cells at the opposite side of the container.
-
-    The slots are in cell `at`. The candidates are in cell `across` and in the same column of the following
-    rows. Returns the new numbers of entries, and the number of tests.
+    """Perform `record_near` for a cell and the cells at the opposite side of the container. The slots are in
+    cell `at`. The candidates are in cell `across` and in the same column of the following rows. Returns the
+    new numbers of entries, and the number of tests.
     """
     ends = cells.ends
     tests = np.uint64(0)
@@ -266,10 +257,9 @@ def record_across(particles, at, across, cells, space, entries, pairs, filled):
 
 @inner_allocating_kernel
 def list_part(particles, part, cells, pairs, space, tests):
-    """List all pairs closer than the contact distance plus the skin that one thread must find.
-
-    The entries are written into pairs[part] (room,), their number into cells.listed, and the number of tests
-    into tests (threads,). If the space is insufficient, the last entries are missing.
+    """List all pairs closer than the contact distance plus the skin that one thread must find. The entries
+    are written into pairs[part] (room,), their number into cells.listed, and the number of tests into tests
+    (threads,). If the space is insufficient, the last entries are missing.
     """
     parts, rows, mine = len(pairs), rows_ahead(len(space.lengths)), pairs[part]
     start, stop = part_of(part, parts, particles.ordinary)
@@ -301,19 +291,17 @@ def list_part(particles, part, cells, pairs, space, tests):
 
 @inner_kernel
 def is_complete(particles, cells):
-    """Return True if no pair can have approached by more than the skin.
-
-    The reference is the time at which the list was made.
+    """Return True if no pair can have approached by more than the skin. The reference is the time at which
+    the list was made.
     """
     return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
 
 
 @inner_kernel
 def search_pairs(particles, entries, space, step, overlaps, thread):
-    """Record the pairs of some entries (n,) that must be resolved.
-
-    With a pass `step.before`, only pairs are searched that contain a particle with a contact in that pass,
-    because all other particles have not changed since the last search.
+    """Record the pairs of some entries (n,) that must be resolved. With a pass `step.before`, only pairs are
+    searched that contain a particle with a contact in that pass, because all other particles have not changed
+    since the last search.
     """
     touching, before, last_pass = overlaps.touching[thread], step.before, particles.last_pass
     # The number is written to `overlaps` only at the end, because threads that write to one cache line wait

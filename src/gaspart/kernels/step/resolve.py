@@ -37,9 +37,8 @@ _LATE = 1.125  # time in steps; earlier contacts belong to an earlier step, for 
 
 @inner_helper
 def distance_squared(particles, i, j, space):
-    """Return the squared distance of two slots, for the nearest image.
-
-    The bits are the same as in `invariants`, but there is no branch.
+    """Return the squared distance of two slots, for the nearest image. The bits are the same as in
+    `invariants`, but there is no branch.
     """
     rr = space.margin - space.margin
     for k in range(len(space.lengths)):
@@ -66,10 +65,8 @@ def invariants(particles, i, j, space):
 
 @inner_helper
 def entry_time(rr, rv, vv, ss):
-    """Return the past time of first touch of an overlapping pair in uniform motion.
-
-    For an approaching pair it is `contact_root`. For a separating pair the other form of the root is used,
-    which does not cancel.
+    """Return the past time of first touch of an overlapping pair in uniform motion. For an approaching pair
+    it is `contact_root`. For a separating pair the other form of the root is used, which does not cancel.
     """
     if rv < 0.0:
         return contact_root(rr, rv, vv, ss)
@@ -102,9 +99,8 @@ def examine(particles, i, j, space, step, overlaps, thread):
 
 @inner_helper
 def earlier(index, pairs, times, m, n):
-    """Return True if contact m is resolved before contact n.
-
-    The order is by time, then lower index, then higher index.
+    """Return True if contact m is resolved before contact n. The order is by time, then lower index, then
+    higher index.
     """
     if times[m] != times[n]:
         return times[m] < times[n]
@@ -114,9 +110,8 @@ def earlier(index, pairs, times, m, n):
 
 @inner_allocating_kernel
 def spread(times):
-    """Sort contacts into equal intervals of time, as many as there are contacts.
-
-    The result is nearly sorted by time.
+    """Sort contacts into equal intervals of time, as many as there are contacts. The result is nearly sorted
+    by time.
     """
     number = len(times)
     first, last = times.min(), times.max()
@@ -170,10 +165,8 @@ def merge(index, pairs, times, order, room, low, middle, high):
 
 @inner_allocating_kernel
 def in_order(index, pairs, times):
-    """Return the order in which contacts are resolved.
-
-    Contacts are first sorted into intervals of time and then in runs, and the runs are merged if necessary.
-    (numba's own sorts take 15 s to compile.)
+    """Return the order in which contacts are resolved. Contacts are first sorted into intervals of time and
+    then in runs, and the runs are merged if necessary. (numba's own sorts take 15 s to compile.)
     """
     number = len(times)
     order = spread(times)
@@ -192,10 +185,9 @@ def in_order(index, pairs, times):
 
 @inner_helper
 def impulse_factors(rr, rv, mass1, mass2):
-    """Return the factors k1, k2 of an elastic contact, and |r.p|.
-
-    The velocities change by v1 += k1 r, v2 -= k2 r, and p is the transferred momentum. The velocity of a
-    particle of infinite mass does not change; `exchange` has no value in this case.
+    """Return the factors k1, k2 of an elastic contact, and |r.p|. The velocities change by v1 += k1 r, v2 -=
+    k2 r, and p is the transferred momentum. The velocity of a particle of infinite mass does not change;
+    `exchange` has no value in this case.
     """
     if mass1 == np.inf:
         return rr - rr, (rv + rv) / rr, (mass2 + mass2) * abs(rv)
@@ -207,9 +199,8 @@ def impulse_factors(rr, rv, mass1, mass2):
 
 @inner_helper
 def record_contact(particles, slot, speed_squared, space, step, tally, cells):
-    """Record a contact of a particle, and update all bounds.
-
-    It is counted if it is not the first contact of the particle in this step.
+    """Record a contact of a particle, and update all bounds. It is counted if it is not the first contact of
+    the particle in this step.
     """
     tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
     particles.last_pass[slot] = step.number
@@ -261,10 +252,8 @@ def count_fixed(particles, i, j, tally, fixed):
 
 @inner_helper
 def resolve(particles, i, j, model, step, tally, law, cells):
-    """Resolve a pair, if it must still be resolved.
-
-    The pair is rewound to its contact, exchanges momentum along the normal, and moves for the rest of the
-    step with the new velocities.
+    """Resolve a pair, if it must still be resolved. The pair is rewound to its contact, exchanges momentum
+    along the normal, and moves for the rest of the step with the new velocities.
     """
     space = model.space
     rr, rv, vv = invariants(particles, i, j, space)

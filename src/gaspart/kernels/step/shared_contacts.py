@@ -44,9 +44,8 @@ def is_among(slot, slots):
 
 @inner_kernel
 def select_own(contacts, slots, held, own):
-    """Select the contacts between two slots of one thread, in order; return their number.
-
-    Particles in contact with a particle of another thread are marked in `held`.
+    """Select the contacts between two slots of one thread, in order; return their number. Particles in
+    contact with a particle of another thread are marked in `held`.
     """
     number = 0
     for contact in contacts.order:
@@ -63,9 +62,8 @@ def select_own(contacts, slots, held, own):
 
 @inner_helper
 def tally_of_contact(tally, terms):
-    """Return a tally whose sums are the terms (..., 2) of one contact.
-
-    This function is for kernels that create no arrays, because it does not count references.
+    """Return a tally whose sums are the terms (..., 2) of one contact. This function is for kernels that
+    create no arrays, because it does not count references.
     """
     return StepTally(
         tally.counts, terms, tally.extremes, tally.wall_hits, tally.wall_impulse, tally.wall_loss,
@@ -105,10 +103,8 @@ def resolve_postponed(particles, contacts, model, step, tally, cells):
 
 @inner_allocating_kernel
 def resolve_part(particles, part, contacts, model, step, tally, cells):
-    """Resolve the contacts of one thread.
-
-    The thread writes its counts, extremes and bounds only at the end, because threads that write to one cache
-    line wait for each other.
+    """Resolve the contacts of one thread. The thread writes its counts, extremes and bounds only at the end,
+    because threads that write to one cache line wait for each other.
     """
     own = np.empty(len(contacts.order), np.uint32)
     slots = part_of(part, len(cells.listed), particles.positions.shape[1])
@@ -166,10 +162,8 @@ def resolve_shared(particles, ordered_pairs, model, step, tally, cells):
 
 @inner_allocating_kernel
 def resolve_found(particles, ordered_pairs, model, step, tally, threads, law, cells):
-    """Resolve the pairs of one search, in their order.
-
-    The work is shared among threads if there are several threads and a neighbour list, and if contacts are
-    smooth.
+    """Resolve the pairs of one search, in their order. The work is shared among threads if there are several
+    threads and a neighbour list, and if contacts are smooth.
     """
     if law is None:
         if cells is not None:

@@ -214,10 +214,8 @@ def measure_displacement(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def is_outdated(particles, cells, space, threads):
-    """Return True if the neighbour list must be renewed.
-
-    First the bound on the displacement of the fastest particle is tested. If it is too large, the
-    displacements of all particles are measured.
+    """Return True if the neighbour list must be renewed. First the bound on the displacement of the fastest
+    particle is tested. If it is too large, the displacements of all particles are measured.
     """
     if is_complete(particles, cells):
         return False

@@ -13,7 +13,6 @@ from typing import Any
 
 from gaspart.errors import SceneError
 from gaspart.files import resolve_path
-from gaspart.reproduction.archive.limits import name_fault
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.config import check, is_own, merged_with_default
@@ -24,14 +23,15 @@ from gaspart.reproduction.registry import caption
 from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
-# Scene files that a config names.
+
+def leads_out(name: str) -> bool:
+    """Return True for the name of a file that is not below the folder of an archive."""
+    return name.startswith("/") or "\\" in name or ".." in name.split("/")
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the distinct paths of the scene files of all experiments in a merged config.
-
-    Paths are normalised, without "./". They are the values of `scene` in points and grids. Values of another
-    type are ignored here; the validation of configs reports them.
+    """Return the distinct normalised paths of the scene files of all experiments in a merged config. They are
+    the texts under `scene` in points and grids.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -45,9 +45,6 @@ def scene_files(config: Any) -> list[str]:
     return list(paths)
 
 
-# Finished run of the workflow: its folder, its config, and the results that it must have.
-
-
 _BASE = Path("config/config.yaml")
 _WORKFLOWS = ("Snakefile", "workflow/Snakefile")
 _WHOLE = {"experiments", "figures"}
@@ -56,12 +53,9 @@ _WHOLE = {"experiments", "figures"}
 
 @dataclass(frozen=True)
 class Finished:
-    """Finished run; its paths are relative to `root`, the folder of the workflow.
-
-    results : `results` or `results/<run>`, in the folder of the module's prefix if there is a prefix.
-    config : the merged config.
-    points : points from which figures and films are made.
-    configs : files of the config that are in `root`.
+    """Finished run: merged config, its files, and points of figures and films. All paths are relative to
+    `root`, the folder of the workflow. `results` is `results` or `results/<run>`, in the folder of the
+    module's prefix if there is a prefix.
     """
 
     root: Path
@@ -77,9 +71,8 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """True if `root` is a copy of the project.
-
-        Otherwise `root` has another workflow, which uses this project as a module.
+        """True if `root` is a copy of the project. Otherwise `root` has another workflow, which uses this
+        project as a module.
         """
         return (self.root / "workflow/rules/common.smk").is_file()
 
@@ -94,10 +87,7 @@ class Finished:
         return f"{self.results}/report.html"
 
     def outputs(self) -> Iterator[str]:
-        """Yield the results that every archive contains unchanged: figures, tables, measurements, films.
-
-        Figures in the width of a journal's column are left out, because they are a third of all figures.
-        """
+        """Yield the results in every archive; figures in a journal's width, a third of all, are left out."""
         folder = self.results
         yield f"{folder}/tables/claims.csv"
         for figure in self.figures:
@@ -118,15 +108,10 @@ class Finished:
 
 
 def find_finished(results: str | Path, config: str | Path | None = None) -> Finished:
-    """Find the finished run whose results are in the folder `results` or `results/<run>`.
-
-    By default, `config` is searched in the folders `config` of the project and of its parent folders. Exactly
-    one config must have the name of this run. Another workflow may use this one as a module. Then the folder
-    has the Snakefile and config of the other workflow. If the module has a prefix, the results lie in a
-    subfolder with that name.
-
-    Raises SceneError if the folder has no results, if results are missing, or if trajectories were made with
-    settings that differ from the config.
+    """Find the finished run whose results are in the folder `results` or `results/<run>`. By default,
+    `config` is the one config of the project with the name of this run. If another workflow uses this one as
+    a module, the project is that of the other workflow. Raises SceneError if results are missing, or if
+    trajectories were made with settings that differ from the config.
     """
     folder = resolve_path(results)
     if not (folder / "tables/claims.csv").is_file():
@@ -162,10 +147,7 @@ def _project_of(folder: Path) -> Path | None:
 
 
 def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[Point]:
-    """Return the distinct points of figures and films.
-
-    The rule `all` makes no other points.
-    """
+    """Return the distinct points of figures and films, which are those that the rule `all` makes."""
     points = [point for figure in config["figures"] for point in figure_points(config, figure, planned)]
     films = [block for block in config.get("animations", {}).values() if block]
     points += [next(iter(planned[block["experiment"]].values())) for block in films]
@@ -173,10 +155,7 @@ def _select_points(config: dict, planned: dict[str, dict[str, Point]]) -> list[P
 
 
 def _config_of(root: Path, name: str | None) -> Path:
-    """Return the config of a run; pass None for the run without a name.
-
-    Raises SceneError unless there is exactly one such config.
-    """
+    """Return the only config of a run, whose name may be None; raise SceneError for none or several."""
     if name is None and (root / _BASE).is_file():
         return root / _BASE
     files = [*sorted((root / "config").glob("*.y*ml")), *sorted(root.glob("*.y*ml"))]
@@ -188,10 +167,7 @@ def _config_of(root: Path, name: str | None) -> Path:
 
 
 def _is_config_of(file: Path, name: str | None) -> bool:
-    """Return True if a file is a config with this value of `run`.
-
-    For the run without a name, the config must be complete.
-    """
+    """Return True for a config with this value of `run`; without a name it must be complete."""
     try:
         content = read_yaml(file)
     except SceneError:
@@ -237,11 +213,8 @@ _OF_PACKAGE = Path(__file__).parents[4]
 
 
 def sources(run: Finished) -> Iterator[str]:
-    """Yield the files of the project with which the run can be repeated.
-
-    These files are the workflow, its config and scenes, the library, and the locked environment. If another
-    workflow uses this one as a module, it has some of these files, and CITATION.cff. Raises SceneError if a
-    necessary file is missing.
+    """Yield the files of the project with which the run can be repeated. If another workflow uses this one as
+    a module, it has some of these files, and CITATION.cff. Raises SceneError if a necessary file is missing.
     """
     required = (run.workflow, CITATION, *(_NEEDED if run.is_copy else ()))
     for name in required:
@@ -256,7 +229,7 @@ def sources(run: Finished) -> Iterator[str]:
     yield from run.configs
     yield from (block["module"] for block in run.config["figures"].values() if "module" in block)
     for name in scene_files(run.config):
-        if name_fault(name):
+        if leads_out(name):
             raise SceneError("scene", name, "must be in the project's folder for an archive")
         yield name
 
@@ -267,10 +240,7 @@ def folders(run: Finished) -> list[str]:
 
 
 def _files(root: Path, folder: str) -> Iterator[str]:
-    """Yield the files in a folder and its subfolders, except hidden files and caches.
-
-    Python and pip write these caches.
-    """
+    """Yield the files in a folder and its subfolders, except hidden files and caches of Python and pip."""
     for parent, folders, names in os.walk(root / folder):
         folders[:] = sorted(name for name in folders if name != "__pycache__" and _is_kept(name))
         for name in sorted(filter(_is_kept, names)):
@@ -302,10 +272,7 @@ def captions(run: Finished) -> dict[str, str]:
 
 
 def _caption(run: Finished, figure: str) -> str | None:
-    """Return the caption of a figure, with placeholders for its measured numbers.
-
-    None for a figure of a module: its caption is in another folder, and only the report contains it.
-    """
+    """Return the caption of a figure with placeholders, or None if it is in the folder of a module."""
     block = run.config["figures"][figure]
     if is_own(block):
         return caption(block)

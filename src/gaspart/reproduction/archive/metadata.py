@@ -19,12 +19,7 @@ from gaspart.yaml_text import read_yaml
 
 
 class Citation(NamedTuple):
-    """Title, creators and licence of an archive, from the project's CITATION.cff.
-
-    creators : persons and organisations, as entities of the metadata.
-    licence : identifier of the licence at spdx.org, such as BSD-3-Clause.
-    url : address of the project, or "".
-    """
+    """Title, creators (entities of the metadata), licence at spdx.org, and address of a project, or ""."""
 
     title: str
     creators: list[dict[str, str]]
@@ -34,32 +29,24 @@ class Citation(NamedTuple):
 
 
 def read_citation(path: Path) -> Citation:
-    """Read a CITATION.cff, version 1.2.0.
-
-    Raises SceneError if the file cannot be read, or does not have a key that an archive needs.
-    """
+    """Read a CITATION.cff, version 1.2.0; raise SceneError without a key that an archive needs."""
     content = read_yaml(path)
     for key in ("title", "authors", "license"):
         if not (isinstance(content, dict) and content.get(key)):
             raise SceneError(key, None, "is required for an archive", str(path))
-    if not isinstance(content["authors"], list):
-        raise SceneError("authors", content["authors"], "must be a list", str(path))
+    authors, licence = content["authors"], content["license"]
+    if not (isinstance(authors, list) and all(isinstance(author, dict) for author in authors)):
+        raise SceneError("authors", authors, "must be a list of persons and organisations", str(path))
     creators = []
-    for n, author in enumerate(content["authors"]):
-        fields = author if isinstance(author, dict) else {}
-        parts = [fields.get(key) for key in ("given-names", "name-particle", "family-names")]
-        name = fields.get("name") or " ".join(str(part) for part in parts if part)
-        if not name:
-            rule = "must have a name, or given-names and family-names"
-            raise SceneError(f"authors[{n}]", author, rule, str(path))
+    for n, author in enumerate(authors):
+        parts = [author.get(key) for key in ("given-names", "name-particle", "family-names")]
         creator = {
-            "@id": fields.get("orcid") or fields.get("website") or f"#creator-{n + 1}",
-            "@type": "Organization" if fields.get("name") else "Person",
-            "name": name,
-            "affiliation": fields.get("affiliation"),
+            "@id": author.get("orcid") or author.get("website") or f"#creator-{n + 1}",
+            "@type": "Organization" if author.get("name") else "Person",
+            "name": author.get("name") or " ".join(str(part) for part in parts if part),
+            "affiliation": author.get("affiliation"),
         }
         creators.append({key: str(value) for key, value in creator.items() if value})
-    licence = content["license"]
     return Citation(
         str(content["title"]),
         creators,
@@ -97,27 +84,18 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Described:
-    """Sources of the metadata.
-
-    files : (size, digest) of each file of the archive, by path.
-    summary : content of `run.json`.
-    captions : captions by path.
-    claims : number of claims.
-    """
+    """Sources of the metadata."""
 
     run: contents.Finished
-    files: Mapping[str, tuple[int, str]]
-    summary: Mapping[str, Any]
+    files: Mapping[str, tuple[int, str]]  # size and digest by path
+    summary: Mapping[str, Any]  # `run.json`
     jobs: Sequence[tables.JobTime]
-    captions: Mapping[str, str]
+    captions: Mapping[str, str]  # by path
     claims: int
 
 
 def metadata(described: Described, citation: Citation) -> str:
-    """Return the text of `ro-crate-metadata.json`.
-
-    Raises SceneError if the package rocrate is missing.
-    """
+    """Return the text of `ro-crate-metadata.json`."""
     crate = optional("rocrate.rocrate", "archive", "archives").ROCrate(version="1.1")
     crate.metadata.extra_contexts.append(_TERMS)
     creators = _single([crate.add_jsonld(dict(creator)) for creator in citation.creators])

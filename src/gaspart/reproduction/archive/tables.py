@@ -6,17 +6,16 @@ import csv
 import io
 import os
 import platform
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import distributions
-from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from gaspart.reproduction import job_time
 from gaspart.reproduction.archive.contents import Finished
-from gaspart.reproduction.archive.limits import MOST_ROWS, digest_of_file, digest_of_numbers, joint_digest
+from gaspart.reproduction.archive.digests import digest_of_file, digest_of_numbers, joint_digest
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.system import memory
@@ -32,11 +31,9 @@ RUN = f"{FOLDER}/run.json"
 
 
 class PointFile(NamedTuple):
-    """Row of `points.csv`: a file of a point.
-
-    For a point without trajectories these fields are "": `replica`; `numbers_sha256`, the digest of the
-    numbers in a trajectory without its attributes; and `revision`, the git revision at which the trajectory
-    was begun.
+    """Row of `points.csv`: a file of a point; the fields of trajectories are "" for other points.
+    `numbers_sha256` is the digest of the numbers without the attributes, and `revision` the git revision at
+    which the trajectory was begun.
     """
 
     experiment: str
@@ -51,12 +48,7 @@ class PointFile(NamedTuple):
 
 
 class ClaimData(NamedTuple):
-    """Row of `claims.csv`: a claim and the digests of its data.
-
-    data : measurement from which the claim is judged.
-    inputs_sha256 : joint digest of the inputs of the measurement, points or other claims (see
-        `joint_digest`).
-    """
+    """Row of `claims.csv`: a claim, its measurement, and the `joint_digest` of what that is made of."""
 
     figure: str
     claim: str
@@ -77,10 +69,7 @@ class JobTime(NamedTuple):
 
 
 def point_files(run: Finished) -> list[PointFile]:
-    """Return the files of all points, with their digests.
-
-    All files are read.
-    """
+    """Return the files of all points, with their digests."""
     rows = []
     for point in run.points:
         is_folder = point.job == TRAJECTORIES
@@ -92,11 +81,11 @@ def point_files(run: Finished) -> list[PointFile]:
     return rows
 
 
-def inputs_of(measurement: Path) -> list[str]:
-    """Return the points, or tables of claims, that a measurement states as its origin."""
+def inputs_of(measurement: bytes) -> list[str]:
+    """Return the points, or tables of claims, that the file of a measurement states as its origin."""
     from netCDF4 import Dataset
 
-    with Dataset(measurement) as file:
+    with Dataset("measurement", memory=measurement) as file:
         return str(file.getncattr("points")).splitlines()
 
 
@@ -108,17 +97,14 @@ def claim_rows(run: Finished, files: Iterable[PointFile]) -> list[ClaimData]:
     data: dict[str, tuple[str, str, str]] = {}
     for figure in run.figures:
         path = f"{run.results}/measurements/{figure}.nc"
-        joint = joint_digest(inputs_of(run.root / path), digests)
+        joint = joint_digest(inputs_of((run.root / path).read_bytes()), digests)
         data[figure] = (path, digest_of_file(run.root / path), joint)
     rows = table.read(run.root / run.results / "tables/claims.csv")
     return [ClaimData(row["figure"], row["claim"], row["verdict"], *data[row["figure"]]) for row in rows]
 
 
 def job_times(run: Finished) -> list[JobTime]:
-    """Return time and memory of each job of the run, as its log states them.
-
-    Points that the config no longer has are left out.
-    """
+    """Return time and memory of each job, as its log states them, without points that the config lost."""
     folder = run.root / run.results / "logs"
     kept = {(point.experiment, point.name) for point in run.points}
     rows = []
@@ -141,25 +127,9 @@ def text_of(rows: Iterable[tuple], columns: tuple[str, ...]) -> str:
     return text.getvalue()
 
 
-def rows_of(text: str, columns: Sequence[str] = ()) -> list[dict[str, str]]:
-    """Return the rows of a text made by `text_of`.
-
-    The table must have at least these columns. Raises ValueError if a column is missing, if a field has more
-    than 131072 characters, or if there are more than `MOST_ROWS` rows.
-    """
-    lines = csv.DictReader(io.StringIO(text, newline=""), strict=True)
-    try:
-        missing = [name for name in columns if name not in (lines.fieldnames or ())]
-        rows = list(islice(lines, MOST_ROWS + 1))
-    except csv.Error as error:
-        raise ValueError(f"line {lines.line_num}: {error}") from None
-    if missing:
-        raise ValueError(f"it has no column {missing[0]}")
-    if len(rows) > MOST_ROWS:
-        raise ValueError(f"it has more than {MOST_ROWS} rows")
-    if any(None in row or None in row.values() for row in rows):  # more or fewer fields than names
-        raise ValueError("it has rows of different lengths")
-    return rows
+def rows_of(text: str) -> list[dict[str, str]]:
+    """Return the rows of a text made by `text_of`."""
+    return list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
 
 
 def _machine() -> dict[str, Any]:

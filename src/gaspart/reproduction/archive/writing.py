@@ -14,7 +14,7 @@ from gaspart.errors import SceneError, optional
 from gaspart.files import FileKind, output_path, writing
 from gaspart.reproduction.archive import contents, tables
 from gaspart.reproduction.archive.contents import Finished, find_finished
-from gaspart.reproduction.archive.limits import check_names, digest, name_fault
+from gaspart.reproduction.archive.digests import digest
 from gaspart.reproduction.archive.metadata import METADATA, Described, metadata, read_citation
 from gaspart.yaml_text import dump_yaml
 
@@ -43,14 +43,9 @@ def write_archive(
     trajectories: bool = False,
     overwrite: bool = False,
 ) -> str:
-    """Write the archive of a finished run, and return a line that describes its contents.
-
-    results : folder of the results, `results` or `results/<run>`.
-    config : config of the run. Default: the config with the name of the run.
-    trajectories : True to include the trajectories, not only their digests.
-
-    Raises SceneError like `find_finished`. Raises it also if a file of the project or the package rocrate is
-    missing, or if the path cannot be written.
+    """Write the archive of a finished run, and return a line that describes its contents. The arguments are
+    those of `find_finished`; with `trajectories`, they are included. Raises SceneError like `find_finished`,
+    if a file or the package rocrate is missing, or if the path cannot be written.
     """
     optional("rocrate.rocrate", "archive", "archives")  # fails before the work starts
     if output_path(path).suffix != ".zip":
@@ -63,10 +58,7 @@ def write_archive(
             except (ValueError, LookupError, StopIteration, AttributeError, csv.Error) as error:
                 if isinstance(error, SceneError):
                     raise
-                rule = (
-                    # the file was edited or truncated
-                    f"has a table or measurement that cannot be read: {error}"
-                )
+                rule = f"has a table or measurement that cannot be read: {error}"
                 raise SceneError("results", str(results), rule) from None
     return f"{path}: {line}, {Path(path).stat().st_size / 1e6:.1f} MB"
 
@@ -102,7 +94,6 @@ class _Writer:
         self._add_text(tables.RUN, json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
         described = Described(run, dict(self._files), summary, jobs, captions, len(claims))
         self._add_text(METADATA, metadata(described, read_citation(run.root / contents.CITATION)))
-        check_names(run.root, self._files)
         lines = [f"{value}  {name}\n" for name, (_, value) in sorted(self._files.items())]
         self._add_text(MANIFEST, "".join(lines))
         count = sum(1 for _ in run.trajectories())
@@ -121,8 +112,6 @@ class _Writer:
     def _add(self, name: str, source: IO[bytes], size: int, mode: int) -> None:
         if name in self._files:
             return
-        if fault := name_fault(name):
-            raise SceneError("file", name, f"cannot be in an archive: its name {fault}")
         entry = zipfile.ZipInfo(name, _TIME)
         entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, (stat.S_IFREG | mode) << 16
         with self._file.open(entry, "w", force_zip64=size > _LARGE) as target:

@@ -92,9 +92,8 @@ class Claim:
 
     @classmethod
     def at_least(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
-        """Return the claim that the measured number is `bound` or more.
-
-        `rest` and `others` are the remaining fields of the claim, from `required` on.
+        """Return the claim that the measured number is `bound` or more. `rest` and `others` are the remaining
+        fields of the claim, from `required` on.
         """
         text = f"{claim} (at least {bound:g})"
         others["bounds"] = (bound, math.inf)
@@ -102,9 +101,8 @@ class Claim:
 
     @classmethod
     def at_most(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
-        """Return the claim that the measured number is `bound` or less.
-
-        `rest` and `others` are the remaining fields of the claim, from `required` on.
+        """Return the claim that the measured number is `bound` or less. `rest` and `others` are the remaining
+        fields of the claim, from `required` on.
         """
         text = f"{claim} (at most {bound:g})"
         others["bounds"] = (-math.inf, bound)
@@ -115,10 +113,9 @@ class Claim:
         cls, claim: str, measured: Estimate, expected: Number, half_width: Number,
         source: str, fails_if: str, **others: Any,
     ) -> Claim:  # fmt: skip
-        """Return the claim that the measured number lies within `half_width` of `expected`.
-
-        `others` are the remaining fields. If they do not contain the required uncertainty, it is `half_width`
-        / 2. The 95 % interval of the measurement is then no wider than the interval of the claim.
+        """Return the claim that the measured number lies within `half_width` of `expected`. `others` are the
+        remaining fields. If they do not contain the required uncertainty, it is `half_width` / 2. The 95 %
+        interval of the measurement is then no wider than the interval of the claim.
         """
         low, high = expected - half_width, expected + half_width
         text = f"{claim} (within {low:g} to {high:g})"
@@ -129,11 +126,10 @@ class Claim:
     def chi_square(
         cls, *, chi_square: Number, degrees_of_freedom: int, error_freedom: Number = math.inf, **others: Any
     ) -> Claim:
-        """Return the claim that chi-square per degree of freedom is 1.
-
-        The deviation of the claim is the deviation of a Gaussian number with equal two-sided probability. It
-        is two-sided because a chi-square that is far too small is also an error: the error bars are too
-        large. The uncertainty sqrt(2 / dof) is the scatter of the statistic itself.
+        """Return the claim that chi-square per degree of freedom is 1. The deviation of the claim is the
+        deviation of a Gaussian number with equal two-sided probability. It is two-sided because a chi-square
+        that is far too small is also an error: the error bars are too large. The uncertainty sqrt(2 / dof) is
+        the scatter of the statistic itself.
 
         error_freedom : degrees of freedom of a common uncertainty of all deviations, if it was computed from
             a few samples. The statistic per degree of freedom then follows Fisher's distribution.
@@ -155,9 +151,8 @@ class Claim:
 
     @classmethod
     def joint(cls, claim: str, deviations: ArrayLike, source: str, fails_if: str, **others: Any) -> Claim:
-        """Return the `chi_square` claim on independent deviations.
-
-        Deviations are in standard deviations, and have any shape.
+        """Return the `chi_square` claim on independent deviations. Deviations are in standard deviations, and
+        have any shape.
         """
         import numpy as np
 
@@ -176,11 +171,10 @@ class Claim:
 
     @property
     def deviation_sigma(self) -> float:
-        """Signed distance from the expected value, in standard deviations; 0 within bounds.
-
-        The distance is (measured - expected) / sqrt(u1^2 + u2^2), where u1 and u2 are the uncertainties of
-        the two values. For bounds, the nearer bound is the expected value. See `Estimate.deviation` for
-        uncertainties from a few samples.
+        """Signed distance from the expected value, in standard deviations; 0 within bounds. The distance is
+        (measured - expected) / sqrt(u1^2 + u2^2), where u1 and u2 are the uncertainties of the two values.
+        For bounds, the nearer bound is the expected value. See `Estimate.deviation` for uncertainties from a
+        few samples.
         """
         if self.exact_deviation is not None:
             return self.exact_deviation
@@ -210,18 +204,16 @@ class Claim:
 
     @property
     def is_conclusive(self) -> bool:
-        """True if agreement would be significant.
-
-        The uncertainty is at most the required one, and the alternative would be distinguished.
+        """True if agreement would be significant. The uncertainty is at most the required one, and the
+        alternative would be distinguished.
         """
         return self.is_finite and self.measured.error <= self.required and self.has_power
 
     @property
     def is_scattered(self) -> bool:
-        """True if the deviation of a true claim is an independent standard Gaussian number.
-
-        This holds for a test of a value with a verdict. Its allowance must be negligible relative to the
-        uncertainty of the measurement.
+        """True if the deviation of a true claim is an independent standard Gaussian number. This holds for a
+        test of a value with a verdict. Its allowance must be negligible relative to the uncertainty of the
+        measurement.
         """
         return (
             not self.follows
@@ -245,12 +237,10 @@ a two-sided 3-sigma test rejects a true claim.
 
 
 def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
-    """Return True for each hypothesis of a family that Holm's step-down procedure rejects.
-
-    The smallest of m probabilities is compared with level / m, the second smallest with level / (m-1), and so
-    on. The procedure stops at the first probability above its threshold. The probability of any wrong
-    rejection is at most `level`, even if the hypotheses depend on each other (Holm, Scand. J. Stat. 6, 65
-    (1979)).
+    """Return True for each hypothesis of a family that Holm's step-down procedure rejects. The smallest of m
+    probabilities is compared with level / m, the second smallest with level / (m-1), and so on. The procedure
+    stops at the first probability above its threshold. The probability of any wrong rejection is at most
+    `level`, even if the hypotheses depend on each other (Holm, Scand. J. Stat. 6, 65 (1979)).
     """
     rejected = [False] * len(p_values)
     order = sorted(range(len(p_values)), key=lambda index: p_values[index])
@@ -262,12 +252,11 @@ def holm(p_values: Sequence[float], level: float = FAMILY_LEVEL) -> list[bool]:
 
 
 def family_test(claims: Sequence[Claim]) -> list[Claim]:
-    """Return a list with the joint test of a figure's claims, or an empty list.
-
-    The list is empty if fewer than two claims count, or if no value scatters. A claim counts if it states a
-    value that other claims do not determine. If an allowance is not negligible, the deviation is not a
-    standard Gaussian number. Holm's correction detects a single deviation that is too large. This two-sided
-    chi-square detects many deviations that are a little too large, and uncertainties that are too large.
+    """Return a list with the joint test of a figure's claims, or an empty list. The list is empty if fewer
+    than two claims count, or if no value scatters. A claim counts if it states a value that other claims do
+    not determine. If an allowance is not negligible, the deviation is not a standard Gaussian number. Holm's
+    correction detects a single deviation that is too large. This two-sided chi-square detects many deviations
+    that are a little too large, and uncertainties that are too large.
     """
     tested = [claim for claim in claims if claim.form == "value" and claim.kind == "test"]
     if sum(claim.measured.error != 0.0 for claim in tested) < 2:
@@ -283,13 +272,12 @@ def family_test(claims: Sequence[Claim]) -> list[Claim]:
 
 
 def judge(claims: Sequence[Claim]) -> list[str]:
-    """Return the verdicts of the claims of one figure, in the order of the claims.
-
-    All tests and reproductions with finite numbers are one family. Holm's correction determines which of
-    their deviations are significant. Identities do not depend on chance, and the joint test represents all
-    claims; therefore these are tested separately at 3 sigma. A claim without a significant deviation is
-    inconclusive in three cases: its uncertainty is larger than required, it does not exclude the alternative,
-    or its number is outside of the bounds.
+    """Return the verdicts of the claims of one figure, in the order of the claims. All tests and
+    reproductions with finite numbers are one family. Holm's correction determines which of their deviations
+    are significant. Identities do not depend on chance, and the joint test represents all claims; therefore
+    these are tested separately at 3 sigma. A claim without a significant deviation is inconclusive in three
+    cases: its uncertainty is larger than required, it does not exclude the alternative, or its number is
+    outside of the bounds.
     """
     family = [
         claim
@@ -318,10 +306,9 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
 
 
 def reason(claim: Claim, verdict: str) -> str:
-    """Return the reason for a verdict that is inconclusive or missing, or for a source's error.
-
-    For an inconclusive claim the reason contains a factor: a measurement longer by this factor would make the
-    claim conclusive. The reason is empty for other verdicts.
+    """Return the reason for a verdict that is inconclusive or missing, or for a source's error. For an
+    inconclusive claim the reason contains a factor: a measurement longer by this factor would make the claim
+    conclusive. The reason is empty for other verdicts.
     """
     if verdict == "no verdict":
         return claim.no_verdict
@@ -343,10 +330,9 @@ def reason(claim: Claim, verdict: str) -> str:
 
 
 def sufficient(claim: Claim) -> float:
-    """Compute the factor by which the measurement must be longer to be just conclusive.
-
-    The uncertainty falls as the inverse root of the length. The factor is below 1 if a shorter measurement
-    suffices, and infinite if no length suffices. It is NaN without numbers, or without an uncertainty.
+    """Compute the factor by which the measurement must be longer to be just conclusive. The uncertainty falls
+    as the inverse root of the length. The factor is below 1 if a shorter measurement suffices, and infinite
+    if no length suffices. It is NaN without numbers, or without an uncertainty.
     """
     error = claim.measured.error
     if not claim.is_finite or not error > 0.0:

@@ -56,10 +56,9 @@ COUNTED = {"agrees": "agree", "disagrees": "disagree"}
 
 
 def write(path: str | Path, figure: str, claims: Sequence[Claim]) -> None:
-    """Judge the claims of `figure`, and write them atomically as CSV with `COLUMNS`.
-
-    The joint test of the claims is written too. Raises ValueError if two claims have the same text: their
-    rows could not be distinguished.
+    """Judge the claims of `figure`, and write them atomically as CSV with `COLUMNS`. The joint test of the
+    claims is written too. Raises ValueError if two claims have the same text: their rows could not be
+    distinguished.
     """
     claims = [*claims, *family_test(claims)]
     texts = [claim.claim for claim in claims]
@@ -100,12 +99,9 @@ def _row(claim: Claim, verdict: str) -> dict[str, str]:
 
 
 def read(path: str | Path) -> list[dict[str, Any]]:
-    """Read the rows of a claims table as dictionaries by column, with numbers as floats.
-
-    Empty entries, which pandas writes for missing numbers, are read as NaN.
-
-    Raises ValueError with the file's name if the columns are not `COLUMNS`, or if a number or verdict is
-    invalid.
+    """Read the rows of a claims table as dictionaries by column, with numbers as floats. Empty entries, which
+    pandas writes for missing numbers, are read as NaN. Raises ValueError with the file's name if the columns
+    are not `COLUMNS`, or if a number or verdict is invalid.
     """
     with Path(path).open(newline="", encoding="utf-8") as file:
         table = csv.DictReader(file)
@@ -124,9 +120,8 @@ def read(path: str | Path) -> list[dict[str, Any]]:
 
 
 def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
-    """Join the claims of several tables to one pandas DataFrame with `COLUMNS`.
-
-    The order is the order of `paths`.
+    """Join the claims of several tables to one pandas DataFrame with `COLUMNS`. The order is the order of
+    `paths`.
     """
     import pandas
 
@@ -134,10 +129,8 @@ def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
 
 
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
-    """Count the claims of each kind by verdict: {kind: {verdict: number}}.
-
-    Kinds and verdicts are in the order of `CLAIM_KINDS` and `VERDICTS`. Kinds and verdicts without claims are
-    omitted.
+    """Count the claims of each kind by verdict: {kind: {verdict: number}}. Kinds and verdicts are in the
+    order of `CLAIM_KINDS` and `VERDICTS`. Kinds and verdicts without claims are omitted.
     """
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
@@ -148,10 +141,9 @@ def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
 
 
 def summary(path: str | Path) -> str:
-    """Summarise a claims table as text.
-
-    The first line has the number of claims. Then follow a line for each kind, "tests: 205 agree, 3 disagree",
-    and a line for each claim that disagrees. Raises ValueError as `read` does.
+    """Summarise a claims table as text. The first line has the number of claims. Then follow a line for each
+    kind, "tests: 205 agree, 3 disagree", and a line for each claim that disagrees. Raises ValueError as
+    `read` does.
     """
     rows = read(path)
     lines = [f"{len(rows)} claims"]
@@ -173,10 +165,9 @@ NOT_MEASURED = "(not measured in this run)"
 
 
 def fill_caption(caption: str, rows: Iterable[dict[str, Any]], absent: str = NOT_MEASURED) -> str:
-    """Replace the placeholders of a caption by measured values, such as 0.930(16).
-
-    The values come from the rows of the figure in the claims table. If there is no such claim, `absent` is
-    inserted. Raises ValueError if a placeholder fits several claims.
+    """Replace the placeholders of a caption by measured values, such as 0.930(16). The values come from the
+    rows of the figure in the claims table. If there is no such claim, `absent` is inserted. Raises ValueError
+    if a placeholder fits several claims.
     """
     entries = list(rows)
 
@@ -207,9 +198,8 @@ def _number(row: dict[str, Any], name: str) -> float:
 
 
 def concise(value: float, error: float) -> str:
-    """Format a number with its uncertainty in units of the last digit.
-
-    The uncertainty has two digits if these are below 20, else one digit.
+    """Format a number with its uncertainty in units of the last digit. The uncertainty has two digits if
+    these are below 20, else one digit.
     """
     if not (error > 0.0 and math.isfinite(error)):
         return f"{value:.5g}"
@@ -222,12 +212,10 @@ def concise(value: float, error: float) -> str:
 
 
 def literal_copies(caption: str, rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Return measured numbers that a caption contains as literal text.
-
-    Each result has the form "1.34: claim".
-
-    Such a number has a decimal point. It equals the measured value of a claim, but not its expected value, if
-    both are rounded to the same number of digits. A few numbers of another origin are reported by chance.
+    """Return measured numbers that a caption contains as literal text. Each result has the form "1.34:
+    claim". Such a number has a decimal point. It equals the measured value of a claim, but not its expected
+    value, if both are rounded to the same number of digits. A few numbers of another origin are reported by
+    chance.
     """
     copies = []
     for text in _NUMBER.findall(_PLACE.sub("", caption)):

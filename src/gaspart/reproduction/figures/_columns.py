@@ -101,7 +101,6 @@ class Stretch:
 
 def stretches(point: Point, number: int) -> list[Stretch]:
     """Cut the measured part of every replica into `number` blocks of equal length, without a remainder.
-
     Adjacent blocks share only the frame at which momenta are read. Raises ValueError for too few frames.
     """
     radius, result = 0.5 * field(point).diameter, []
@@ -124,11 +123,10 @@ def stretches(point: Point, number: int) -> list[Stretch]:
 
 
 def profile(column: Field, stretch: Stretch, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Average a block without fixed particles over each of B equal bins of height.
-
-    Returns the density of each species (S, B), the density times the temperature (B,), and the pressure (B,).
-    In a steady state the momentum below any height is constant. Therefore the pressure at z is (F_ceiling +
-    sum of m g over particles above z) / width. This is exact, and uses no equation of state.
+    """Average a block without fixed particles over each of B equal bins of height. Returns the density of
+    each species (S, B), the density times the temperature (B,), and the pressure (B,). In a steady state the
+    momentum below any height is constant. Therefore the pressure at z is (F_ceiling + sum of m g over
+    particles above z) / width. This is exact, and uses no equation of state.
     """
     frames, count = stretch.heights.shape
     grid = Grid.line(0.0, column.height, bins)
@@ -203,10 +201,9 @@ def _collisions(point: Point) -> float:
 
 
 class Bins:
-    """Bins of height of a column; those within `clear` diameters of floor or ceiling are not used.
-
-    Arguments of the methods are averages over time: density (S, B), energy (B,), which is density times
-    temperature, pressure (B,), and the temperature of the entire column.
+    """Bins of height of a column; those within `clear` diameters of floor or ceiling are not used. Arguments
+    of the methods are averages over time: density (S, B), energy (B,), which is density times temperature,
+    pressure (B,), and the temperature of the entire column.
     """
 
     def __init__(self, column: Field, number: int, clear: float) -> None:
@@ -238,9 +235,8 @@ class Bins:
         return -np.array(slopes) * temperature / (self.masses * self.column.strength)
 
     def exchange_ratio(self, density: np.ndarray, temperature: float) -> float:
-        """Compute the slope of ln(rho_1 / rho_0) over -(m_1 - m_0) g / T; NaN for one species.
-
-        It is exact at any density: for given positions, no energy depends on which particles are heavy.
+        """Compute the slope of ln(rho_1 / rho_0) over -(m_1 - m_0) g / T; NaN for one species. It is exact at
+        any density: for given positions, no energy depends on which particles are heavy.
         """
         if self.masses.size < 2:
             return np.nan

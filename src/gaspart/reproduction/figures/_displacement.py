@@ -21,7 +21,8 @@ from gaspart.rendering.style import Axes
 from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.theory.diffusion import viscosity_ratio
 from gaspart.trajectory.reading import open_trajectory
 
 # Largest sampling interval, in collisions per particle, of a run for short times, without D: Simpson's rule
@@ -58,7 +59,7 @@ class State:
         self.mean_free_path = float(theory.mean_free_path(eta, dimension))
         self.viscosity = float(theory.enskog_viscosity(eta, dimension))
         if dimension == 3:
-            self.viscosity *= float(theory.viscosity_ratio(eta))
+            self.viscosity *= float(viscosity_ratio(eta))
         density, diffusion = theory.number_density(eta, dimension), theory.enskog_diffusion(eta, dimension)
         spreading = float(diffusion) + self.viscosity / density
         self.shear_time = (self.side / (2.0 * math.pi)) ** 2 / spreading
@@ -101,10 +102,9 @@ def mean(samples: Sequence[Any]) -> Estimate:
 
 
 def columns(point: Point, state: State, curves: list[Curves]) -> dict[str, Any]:
-    """Return the columns of every point.
-
-    In short runs `integral_difference` is the slope of the twice integrated C over that of the msd / 2d, less
-    1: the first uses only velocities, the second only displacements.
+    """Return the columns of every point. In short runs `integral_difference` is the slope of the twice
+    integrated C over that of the msd / 2d, less 1: the first uses only velocities, the second only
+    displacements.
     """
     time = np.mean([curve.time for curve in curves], axis=0)
     rate, dimension = state.collision_rate, point.settings["dimension"]

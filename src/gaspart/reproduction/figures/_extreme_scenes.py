@@ -9,9 +9,9 @@ from functools import partial
 from typing import Any
 
 from gaspart.scene.container import Container
-from gaspart.scene.limits import CLOSE_PACKING
 from gaspart.scene.restitution import Restitution
 from gaspart.scene.scene import Scene
+from gaspart.scene.sizes import CLOSE_PACKING
 from gaspart.scene.species import Particle, Species
 
 GRAZE = 2.0**-50  # about 1e-15, by which a distance of 1 can be changed exactly
@@ -143,7 +143,6 @@ def few(count: int) -> Scene:
 
 def galperin_contacts(ratio: float, heavy: float, light: float, time: float) -> int:
     """Compute the contacts, up to `time`, of a wall, a light particle at rest and one `ratio` times as heavy.
-
     The heavy one arrives with speed 1; for infinite time the numbers are the digits of pi (Galperin, Regul.
     Chaotic Dyn. 8, 375 (2003)). `heavy` and `light` are the distances that each can move until it touches the
     wall, or the particle pressed against it. In the plane of distances times sqrt(mass) the motion is a
@@ -165,11 +164,10 @@ def hits_in_box(
 
 
 def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room: float, time: float) -> int:
-    """Count the contacts of identical particles on a line with each other and with two walls.
-
-    `starts` are positions less the diameters on their left, `room` the length less all diameters. Identical
-    particles exchange velocities: they are points that pass through each other, and a point between walls is
-    on a circle of twice the room. Two meet when sum or difference of their phases is a multiple of it.
+    """Count the contacts of identical particles on a line with each other and with two walls. `starts` are
+    positions less the diameters on their left, `room` the length less all diameters. Identical particles
+    exchange velocities: they are points that pass through each other, and a point between walls is on a
+    circle of twice the room. Two meet when sum or difference of their phases is a multiple of it.
     """
     phases = [(x if v > 0.0 else 2.0 * room - x, abs(v)) for x, v in zip(starts, velocities, strict=True)]
     count = 0
@@ -185,11 +183,10 @@ def contacts_on_line(starts: Sequence[float], velocities: Sequence[float], room:
 
 @dataclass(frozen=True)
 class Row:
-    """Line of the table; durations and steps are in the scene's time.
-
-    `contacts` is the exact number, with particles and walls, or None if the search of all pairs is the
-    reference. In a gas (`chaotic`) engines of different rounding agree on average only. `refused` is the
-    beginning of the names of engines that must reject the scene; "" for all.
+    """Line of the table; durations and steps are in the scene's time. `contacts` is the exact number, with
+    particles and walls, or None if the search of all pairs is the reference. In a gas (`chaotic`) engines of
+    different rounding agree on average only. `refused` is the beginning of the names of engines that must
+    reject the scene; "" for all.
     """
 
     name: str

@@ -73,10 +73,9 @@ class Flow:
 
 
 def flux_of(point: Point, blocks: int) -> Flow:
-    """Measure the heat flux between plates, averaged over both plates and the blocks of each run.
-
-    The slowest wave between the plates is a temperature wave. Its decay time is (gap / pi)^2 n c_p / kappa,
-    with c_p = 5/2 k_B and Enskog's kappa at the mean temperature.
+    """Measure the heat flux between plates, averaged over both plates and the blocks of each run. The slowest
+    wave between the plates is a temperature wave. Its decay time is (gap / pi)^2 n c_p / kappa, with c_p =
+    5/2 k_B and Enskog's kappa at the mean temperature.
     """
     scene, gap = point.scene, Gap.of(point.scene)
     flux = averages(point, gap, blocks, 1).flux()
@@ -89,10 +88,8 @@ def flux_of(point: Point, blocks: int) -> Flow:
 
 
 def relaxation_of(point: Point) -> Flow:
-    """Return the time in which equal speeds relax to Maxwell's, in mean free times.
-
-    The time is the integral of (K_end - K) / (K_end - 1) up to `FREE_TIMES`. Here K is the kurtosis, averaged
-    over replicas.
+    """Return the time in which equal speeds relax to Maxwell's, in mean free times. The time is the integral
+    of (K_end - K) / (K_end - 1) up to `FREE_TIMES`. Here K is the kurtosis, averaged over replicas.
     """
     values, contacts, rate = [], 0, float(theory.collision_rate(point.scene.packing_fraction, 3))
     for run in runs(point, first=0):
@@ -132,9 +129,8 @@ def fraction_of(point: Point) -> float:
 
 
 def speeds_of(timed: Timings, of: Sequence[Flow]) -> dict[str, Estimate]:
-    """Return the CPU time per simulated time of flows in a uniform gas, by engine.
-
-    The timings are of other particle numbers. The step nearest to the flow's step is used.
+    """Return the CPU time per simulated time of flows in a uniform gas, by engine. The timings are of other
+    particle numbers. The step nearest to the flow's step is used.
     """
     gas = 3, of[0].packing_fraction
     same = {timing.solver: timing for timing in timed.of(*gas)}
@@ -150,10 +146,9 @@ def speeds_of(timed: Timings, of: Sequence[Flow]) -> dict[str, Estimate]:
 
 
 def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimate]) -> Iterator[Choice]:
-    """Yield the choices for the engines that measured one observable of one gas.
-
-    `count` is the number of particles for which costs are stated. `speeds` has the CPU time per simulated
-    time by engine, for the particle number of the runs.
+    """Yield the choices for the engines that measured one observable of one gas. `count` is the number of
+    particles for which costs are stated. `speeds` has the CPU time per simulated time by engine, for the
+    particle number of the runs.
     """
     event = next(flow for flow in flows if flow.engine == "event")
     # The fluctuations obey one equation, so all runs together determine their variance.
@@ -171,10 +166,8 @@ def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimat
 
 
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
-    """Return bounds on the errors of model and discretisation.
-
-    The theoretical bounds are used, unless the measured difference from the event-driven engine gives a
-    smaller bound.
+    """Return bounds on the errors of model and discretisation. The theoretical bounds are used, unless the
+    measured difference from the event-driven engine gives a smaller bound.
     """
     bounds = flow.candidate
     if bounds.engine.reference:
@@ -232,9 +225,8 @@ def claim_flows(dataset: xr.Dataset) -> Iterator[Claim]:
 
 
 def relaxation_time(slower: float) -> float:
-    """Compute the relaxation time of a gas with collisions rarer by a factor.
-
-    The speeds of this gas follow the homogeneous Boltzmann equation.
+    """Compute the relaxation time of a gas with collisions rarer by a factor. The speeds of this gas follow
+    the homogeneous Boltzmann equation.
     """
     times = np.linspace(0.0, FREE_TIMES / slower, 251)
     curve, end = theory.relaxation(3), theory.kurtosis(3)

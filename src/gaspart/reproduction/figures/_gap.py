@@ -16,7 +16,7 @@ from gaspart.analysis.series import Blocks
 from gaspart.analysis.statistics import steady_mean
 from gaspart.reproduction.figure import runs
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.scene.scene import Scene
 
 
@@ -69,9 +69,8 @@ class Averages:
         return steady_mean(0.5 * (self.heat_in + self.heat_out)[blocks], *changes.T)
 
     def wall_ratio(self) -> Estimate:
-        """Compute the heat into the cold wall divided by the heat out of the hot wall.
-
-        Both differ by the energy that the particles gained: independent energies at both ends of a replica.
+        """Compute the heat into the cold wall divided by the heat out of the hot wall. Both differ by the
+        energy that the particles gained: independent energies at both ends of a replica.
         """
         replicas, ends, _ = self.stored.shape
         spread = self.stored[:, :, 0].std(axis=1, ddof=1)
@@ -80,9 +79,8 @@ class Averages:
 
 
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Average over blocks of the measured part of each replica, of particles of mass 1.
-
-    Raises ValueError if there are too few frames.
+    """Average over blocks of the measured part of each replica, of particles of mass 1. Raises ValueError if
+    there are too few frames.
     """
     radius = point.scene.smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0

@@ -26,11 +26,9 @@ SYSTEMATIC = 0.02
 
 
 def median(seconds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the median over the last axis, and its standard error.
-
-    The standard error is sqrt(pi/2) times the standard error of a mean. The standard deviation is estimated
-    as 1.4826 times the median deviation. Therefore a disturbance in one of five repeats changes neither
-    result.
+    """Compute the median over the last axis, and its standard error. The standard error is sqrt(pi/2) times
+    the standard error of a mean. The standard deviation is estimated as 1.4826 times the median deviation.
+    Therefore a disturbance in one of five repeats changes neither result.
     """
     middle = np.median(seconds, axis=-1)
     spread = 1.4826 * np.median(np.abs(seconds - middle[..., None]), axis=-1)
@@ -65,9 +63,8 @@ def _costs(run: xr.Dataset, number: np.ndarray, *counted: str) -> xr.Dataset:
 
 
 def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
-    """Fit the cost of each kind of work, (points,) or equal for all: seconds = sum of weight x work.
-
-    If the scatter is larger than the errors (and `SYSTEMATIC`) explain, the covariance is scaled up.
+    """Fit the cost of each kind of work, (points,) or equal for all: seconds = sum of weight x work. If the
+    scatter is larger than the errors (and `SYSTEMATIC`) explain, the covariance is scaled up.
     """
     design = np.stack(np.broadcast_arrays(*work), axis=1)
     fit = statistics.fit_linear(design, seconds.value, _spread(seconds))
@@ -82,12 +79,11 @@ def _spread(seconds: Estimate) -> np.ndarray:
 
 
 def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
-    """Compute the ideal number of boxes per particle from `per_particle` costs, with 95 % intervals.
-
-    `ideal` is the minimum of a + b / boxes + c boxes, fitted to times; between `flat_low` and `flat_high` the
-    cost is at most 5 % higher. `model` is the minimum of seconds = a + b tests + c boxes, all per particle,
-    fitted for the same partitions: sqrt(3^d b / 2 c), NaN if a weight is not positive. The weight a is for
-    moving, sorting, and box visits, whose number hardly changes.
+    """Compute the ideal number of boxes per particle from `per_particle` costs, with 95 % intervals. `ideal`
+    is the minimum of a + b / boxes + c boxes, fitted to times; between `flat_low` and `flat_high` the cost is
+    at most 5 % higher. `model` is the minimum of seconds = a + b tests + c boxes, all per particle, fitted
+    for the same partitions: sqrt(3^d b / 2 c), NaN if a weight is not positive. The weight a is for moving,
+    sorting, and box visits, whose number hardly changes.
     """
     scan = Table(costs, "partition")
     best = statistics.optimum(scan.boxes_per_particle, scan.seconds.value, within=NEAR)
@@ -116,11 +112,10 @@ def ideal(costs: xr.Dataset, dimension: int) -> dict[str, Any]:
 
 
 def penalty(costs: xr.Dataset, boxes_per_particle: float) -> tuple[float, float]:
-    """Compute the time at a number of boxes per particle divided by the least time, and its error.
-
-    Both times are computed from a + b / boxes + c boxes, fitted to the times near the minimum. A single
-    disturbed timing then has little effect. The coefficients are not negative, because no work has a negative
-    cost. Results are NaN beyond the timed partitions.
+    """Compute the time at a number of boxes per particle divided by the least time, and its error. Both times
+    are computed from a + b / boxes + c boxes, fitted to the times near the minimum. A single disturbed timing
+    then has little effect. The coefficients are not negative, because no work has a negative cost. Results
+    are NaN beyond the timed partitions.
     """
     from scipy.optimize import nnls
 
@@ -146,10 +141,9 @@ def _near(seconds: np.ndarray) -> np.ndarray:
 
 
 def log_ratios(run: xr.Dataset, work: np.ndarray) -> np.ndarray:
-    """Compute ln of the time per unit of work (partitions,) relative to a rival, as medians over repeats.
-
-    The first half of the runs has the settings `without`. The second half, the rivals, does not have them.
-    Both are timed alternately.
+    """Compute ln of the time per unit of work (partitions,) relative to a rival, as medians over repeats. The
+    first half of the runs has the settings `without`. The second half, the rivals, does not have them. Both
+    are timed alternately.
     """
     own, beside = np.split(np.log(run.seconds.values / work[:, None]), 2)
     return np.median(own - beside, axis=1)

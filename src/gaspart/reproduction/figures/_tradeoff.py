@@ -96,9 +96,8 @@ class Timings:
 
 
 def compare_steps(points: Iterable[Point], timed: Timings) -> list[dict]:
-    """Return errors and costs of the time steps of each `compare` point, the longest step first.
-
-    Costs are per contact of the exact gas, and NaN for steps that were not timed.
+    """Return errors and costs of the time steps of each `compare` point, the longest step first. Costs are
+    per contact of the exact gas, and NaN for steps that were not timed.
     """
     return [_costs(_errors(point), timed) for point in points if point.job == "compare"]
 
@@ -181,11 +180,10 @@ class Choice:
     trace: float = 1.0
 
     def parts(self, accuracy: float) -> dict[str, float]:
-        """Compute the relative error by `PARTS` of a run for an accuracy.
-
-        If the accuracy is out of reach, the run is infinitely long. The trace of the initial state decays
-        during the measurement. Its mean is the decay time divided by the time of the measurement, times the
-        trace that remains after equilibration.
+        """Compute the relative error by `PARTS` of a run for an accuracy. If the accuracy is out of reach,
+        the run is infinitely long. The trace of the initial state decays during the measurement. Its mean is
+        the decay time divided by the time of the measurement, times the trace that remains after
+        equilibration.
         """
         option = replace(self.option, accuracy=accuracy)
         length, remainder = option.measured, 0.0
@@ -207,10 +205,9 @@ def solver_of(engine: Engine) -> str:
 
 
 def finite_size(gas: Gas, observable: str) -> float:
-    """Compute the relative error that remains after theory's correction for finite size.
-
-    This error is the square of a correction of first order in 1/N. For D it is the uncertainty of the
-    viscosity, and the next order of hydrodynamics.
+    """Compute the relative error that remains after theory's correction for finite size. This error is the
+    square of a correction of first order in 1/N. For D it is the uncertainty of the viscosity, and the next
+    order of hydrodynamics.
     """
     correction = abs(getattr(bulk, f"finite_{declared[observable].bulk}")(gas)[0])
     if observable != "D":
@@ -220,10 +217,9 @@ def finite_size(gas: Gas, observable: str) -> float:
 
 
 def decay_of(gas: Gas, observable: str) -> tuple[float, float]:
-    """Return the decay time of the slowest trace of the initial state, and its maximum initial size.
-
-    For most observables the trace is in the speeds, and its size is 1. For D the trace is the longest shear
-    wave, which carries the part of D that is missing in a finite container.
+    """Return the decay time of the slowest trace of the initial state, and its maximum initial size. For most
+    observables the trace is in the speeds, and its size is 1. For D the trace is the longest shear wave,
+    which carries the part of D that is missing in a finite container.
     """
     eta = gas.packing_fraction
     speeds = 1.0 / (theory.KURTOSIS_RELAXATION_RATE[3] * float(theory.collision_rate(eta, 3)))
@@ -273,9 +269,8 @@ def cells_by_fraction(points: Iterable[Point], experiments: Sequence[str]) -> di
 def choices(
     gas: Gas, observable: str, timed: Timings, compared: list[dict], cells: Cells | None
 ) -> Iterator[Choice]:
-    """Yield all settings of all engines that were timed in a gas of spheres.
-
-    `cells` is the effect of cells in the Enskog model, or None if it is unknown.
+    """Yield all settings of all engines that were timed in a gas of spheres. `cells` is the effect of cells
+    in the Enskog model, or None if it is unknown.
     """
     own = 3, gas.packing_fraction
     contacts = timed.event(*own).contacts

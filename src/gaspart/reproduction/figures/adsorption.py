@@ -22,7 +22,8 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import Well, thermal_face
+from gaspart.scene.boundaries import thermal_face
+from gaspart.scene.surfaces import Well
 from gaspart.theory.equations import STABLE_DISCS
 from gaspart.theory.geometry import Numbers, Values, checked_packing_fraction, particle_volume
 from gaspart.theory.state import compressibility_factor
@@ -169,9 +170,8 @@ class Wall:
 
 
 def counts(wall: Wall, height: np.ndarray, velocity: np.ndarray, settings: dict) -> tuple:
-    """Return means over a block: held, free and far particles; slow flux, and flux by speed.
-
-    Heights (T, N) are those of centres above the lowest position; velocities are along x.
+    """Return means over a block: held, free and far particles; slow flux, and flux by speed. Heights (T, N)
+    are those of centres above the lowest position; velocities are along x.
     """
     held, above = height < wall.width if wall.is_well else velocity == 0.0, height - wall.width
     far = (above > wall.sigma) & (above < wall.outside - wall.sigma)

@@ -81,7 +81,6 @@ def _pile(run: Run, gap: float) -> dict:
 
 def _lasting(scene: Scene, positions: np.ndarray) -> float:
     """Compute the mean kinetic energy of discs with speed g h t_c at depth h, t_c the duration of a contact.
-
     Neighbours with gap s and relative speed v collide after s / v. For their force m v^2 / s to carry the
     weight of h discs, s / v = v / (g h). Slower discs collide again within t_c, and lose no energy.
     """
@@ -99,7 +98,6 @@ def count_contacts(scene: Scene, positions: np.ndarray, radii: np.ndarray, gap: 
 
 class Flow:
     """Flow through one orifice: rates (R,), and ratios of the first half's rate to the second's (R,).
-
     `liquid` is this ratio for a liquid, whose rate is as the square root of its height; `remaining`, the
     discs above the orifice in the first replica; `count`, the number of discs whose passage is timed.
     """
@@ -154,9 +152,8 @@ def _flows(flows: list[Flow]) -> xr.Dataset:
 
 
 def _mean_logarithms(flows: list[Flow], replicas: list[np.ndarray]) -> Estimate:
-    """Average the logarithms of the values (R,) of each flow.
-
-    Their variance is as 1 / (number of discs), with one factor for all orifices, from all replicas.
+    """Average the logarithms of the values (R,) of each flow. Their variance is as 1 / (number of discs),
+    with one factor for all orifices, from all replicas.
     """
     logarithms = [np.log(values) for values in replicas]
     freedom = sum(len(values) - 1 for values in logarithms)

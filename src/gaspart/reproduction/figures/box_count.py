@@ -35,7 +35,7 @@ from gaspart.reproduction.figures._timings import (
 from gaspart.reproduction.figures.naive_scaling import SOURCE_COLOUR
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, merge_with_prefixes, table
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 TITLE, CHAPTER = "Gain from space partitioning", "Speed and accuracy"
 SETTINGS = {
@@ -51,10 +51,8 @@ SETTINGS = {
 
 
 def _moments(per_side: int, side: float, radius: float) -> np.ndarray:
-    """Return three means along an axis over the position of a particle.
-
-    They are of the number of boxes in its neighbourhood, and of the probability that another particle is in
-    the neighbourhood, and its square.
+    """Return three means along an axis over the position of a particle. They are of the number of boxes in
+    its neighbourhood, and of the probability that another particle is in the neighbourhood, and its square.
     """
     edges = np.clip(np.linspace(0.0, side, per_side + 1), radius, side - radius)
     own = np.diff(edges) / (side - 2.0 * radius)
@@ -102,9 +100,8 @@ def share_of_contacts_in_a_box(width: float, diameter: float, dimension: int) ->
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the scan that includes one box, two fine scans, sectors of the events, and A's remarks.
-
-    The container of one fine scan has round widths of boxes, that of the other does not.
+    """Measure the scan that includes one box, two fine scans, sectors of the events, and A's remarks. The
+    container of one fine scan has round widths of boxes, that of the other does not.
     """
     near = [xr.load_dataset(point.path) for point in points if point.settings.get("near_boxes")]
     huge = [xr.load_dataset(point.path) for point in points if "scene" in point.settings]
@@ -137,10 +134,9 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _expected(run: xr.Dataset) -> dict:
-    """Return the expected counts per particle of a scan.
-
-    `touched` and `in_reach` are the boxes that a particle would search if boxes beyond a radius, or beyond a
-    diameter, were left out; the latter cannot contain a partner.
+    """Return the expected counts per particle of a scan. `touched` and `in_reach` are the boxes that a
+    particle would search if boxes beyond a radius, or beyond a diameter, were left out; the latter cannot
+    contain a partner.
     """
     gas, number = (run.dimension, run.side, run.radius), run.attrs["count"]
     sides = [int(n) for n in run.boxes_per_side.values]
@@ -160,13 +156,12 @@ def _expected(run: xr.Dataset) -> dict:
 
 
 def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
-    """Compute the advantage of partitions with round widths, as ln of a ratio of times.
-
-    Each partition is compared with others whose number of boxes differs by less than an eighth, in the
-    container with the shorter side (round widths). The same number in the other container is subtracted. Both
-    scans have the same work, so effects independent of round widths cancel. The uncertainty is the scatter of
-    the other partitions. Their times differ by up to one per cent between processes, which repeats in one
-    process do not show.
+    """Compute the advantage of partitions with round widths, as ln of a ratio of times. Each partition is
+    compared with others whose number of boxes differs by less than an eighth, in the container with the
+    shorter side (round widths). The same number in the other container is subtracted. Both scans have the
+    same work, so effects independent of round widths cancel. The uncertainty is the scatter of the other
+    partitions. Their times differ by up to one per cent between processes, which repeats in one process do
+    not show.
     """
     n = fine.boxes_per_side.values[0]
     difference = np.log(fine.seconds.values[1]) - np.log(fine.seconds.values[0])
@@ -180,9 +175,8 @@ def _advantages(fine: xr.Dataset, round_per_side: list[int]) -> list[Estimate]:
 
 
 def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
-    """Fit pair tests = discs in a neighbourhood x (a + b crossings), and crossings against planes.
-
-    a and b are the neighbourhoods that are searched at an event and at a crossing between sectors.
+    """Fit pair tests = discs in a neighbourhood x (a + b crossings), and crossings against planes. a and b
+    are the neighbourhoods that are searched at an event and at a crossing between sectors.
     """
     scan = Table(events, "partition")
     others = (run.attrs["count"] - 1.0) * neighbour_share(
@@ -198,10 +192,9 @@ def _crossings(events: xr.Dataset, run: xr.Dataset) -> dict[str, Any]:
 
 
 def _near_boxes(runs: list[xr.Dataset]) -> xr.Dataset:
-    """Compare the search of boxes within contact range with a search of all neighbours.
-
-    `own_first` is the fraction of searches that could end in the particle's own box, if this were searched
-    first: boxes of the largest width, a contact (counted), and its partner in the box.
+    """Compare the search of boxes within contact range with a search of all neighbours. `own_first` is the
+    fraction of searches that could end in the particle's own box, if this were searched first: boxes of the
+    largest width, a contact (counted), and its partner in the box.
     """
     first, partitions = runs[0], runs[0].sizes["partition"] // 2
     sides = first.boxes_per_side.values[:partitions]

@@ -27,6 +27,7 @@ from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
+from gaspart.theory.brownian import friction_rate, langevin_msd, langevin_msd_from_rest, tagged_diffusion
 
 TITLE, CHAPTER = "A large particle in a gas", "Motion and its memory"
 # Largest mass ratio at which the linear Boltzmann equation is solved. Langevin's is exact in the limit; at
@@ -59,8 +60,8 @@ class Sphere:
         room = math.prod(b - a for a, b in zip(lower, upper, strict=True))
         density = gas.count / (room - theory.particle_volume(3, 2.0 * self.contact))
         of = self.mass, self.gas_mass, self.temperature
-        self.friction = float(theory.friction_rate(density, self.contact, *of))
-        self.diffusion = float(theory.tagged_diffusion(self.friction, *of))
+        self.friction = float(friction_rate(density, self.contact, *of))
+        self.diffusion = float(tagged_diffusion(self.friction, *of))
         self.share = self.mass / (self.mass + gas.count * gas.mass) if scene.is_periodic else 0.0
         self.mean_free_path = 1.0 / (math.sqrt(2.0) * math.pi * density * (2.0 * gas.radius) ** 2)
         self.is_light = self.mass <= HEAVY * self.gas_mass
@@ -72,9 +73,8 @@ class Sphere:
         return {name: value for name, value in vars(self).items() if name not in ("point", "gas")}
 
     def light_paths(self) -> Iterator[Path]:
-        """Yield groups of paths of the linear Boltzmann equation from rest, sampled like the runs.
-
-        A gas of equal speeds relaxes meanwhile, by its own collisions.
+        """Yield groups of paths of the linear Boltzmann equation from rest, sampled like the runs. A gas of
+        equal speeds relaxes meanwhile, by its own collisions.
         """
         schedule = self.point.schedule
         interval, frames = schedule.sample_interval, schedule.equilibration_frames + schedule.samples
@@ -95,22 +95,20 @@ class Sphere:
             yield time, paths.displacements[:, group], paths.velocities[:, group]
 
     def end_variance(self, duration: float) -> float:
-        """Compute the mean square of a component of the final displacement, from rest.
-
-        A periodic gas drifts with the mean square (1 - share) share k_B T / M along each axis, because the
-        particle's momentum is drawn with the others.
+        """Compute the mean square of a component of the final displacement, from rest. A periodic gas drifts
+        with the mean square (1 - share) share k_B T / M along each axis, because the particle's momentum is
+        drawn with the others.
         """
         if self.is_light:
             return float(np.mean([(moved[-1] ** 2).mean() for _, moved, _ in self.light_paths()]))
         rest = 1.0 - self.share
         slowed = rest**2 * self.diffusion, self.friction / rest
-        variance = theory.langevin_msd_from_rest(duration, *slowed, dimension=1)
+        variance = langevin_msd_from_rest(duration, *slowed, dimension=1)
         return float(variance + rest * self.share * self.temperature / self.mass * duration**2)
 
     def reduce(self, paths: Iterable[Path], share: float) -> tuple[dict[str, Any], dict[str, Estimate]]:
-        """Return curves in reduced units, and equipartition, friction and diffusion of an infinite gas.
-
-        A periodic gas drifts and absorbs the momentum that the particle loses: with s = `share` and the
+        """Return curves in reduced units, and equipartition, friction and diffusion of an infinite gas. A
+        periodic gas drifts and absorbs the momentum that the particle loses: with s = `share` and the
         friction g, C(t) = (k_B T / M)(1 - s)(exp(-g' t) + s), g' = g / (1 - s). The constant part is
         subtracted; errors are bootstrap errors.
         """
@@ -129,7 +127,7 @@ class Sphere:
         msd = np.array([curve.msd for curve in curves]) - 3.0 * drift * curves[0].time ** 2
         late = int(np.argmin(np.abs(time - DIFFUSION_AT)))
         early = time[1 : max(2, np.searchsorted(time, FRICTION_TO) + 1)]
-        langevin = float(theory.langevin_msd(time[late], self.diffusion, 1.0)) * rest**2 / rate
+        langevin = float(langevin_msd(time[late], self.diffusion, 1.0)) * rest**2 / rate
         both = np.concatenate([vacf[:, : early.size + 1], msd[:, [late]]], axis=1)
 
         def decay(x: np.ndarray) -> float:
@@ -198,7 +196,7 @@ def _statistics(point: Point) -> dict[str, Any]:
 
 def _langevin(time: np.ndarray) -> np.ndarray:
     """Compute the mean-squared displacement of the Langevin equation in reduced units."""
-    return np.asarray(theory.langevin_msd(time, 1.0 / 6.0, 1.0))
+    return np.asarray(langevin_msd(time, 1.0 / 6.0, 1.0))
 
 
 BOLTZMANN = "the linear Boltzmann equation, direct simulation (gaspart.theory.boltzmann)"

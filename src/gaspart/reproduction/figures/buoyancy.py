@@ -117,7 +117,6 @@ class Disc:
 
 def _measure_fixed(point: Point, settings: dict) -> dict[str, Any]:
     """Measure force and missing discs; the radius of a disc of fluid with that mass, beyond the disc's own.
-
     The force is the weight of such a disc. Radii are in small radii.
     """
     disc = Disc(point, settings)

@@ -34,7 +34,8 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, pressure, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.theory.tables import chemical_potential_uncertainty, insertion_finite_size_correction
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"
 MEASURED = names("the experiments whose frames are measured; of the others Z alone")
@@ -57,9 +58,8 @@ class MeasuredState:
     fit: Fit
 
     def _estimate(self, reference: float, factors: list[float]) -> Estimate:
-        """Return a quantity of the reference plus the contribution of each coefficient.
-
-        The degrees of freedom of the error are the smallest of the coefficients.
+        """Return a quantity of the reference plus the contribution of each coefficient. The degrees of
+        freedom of the error are the smallest of the coefficients.
         """
         parts = np.array(factors)
         error = np.sqrt(parts @ self.fit.covariance @ parts)
@@ -112,7 +112,6 @@ def _excess(point: Point) -> dict[str, Any]:
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure mu_excess / (k_B T) and ln Q / N at each point of `measured`, by insertion and Gibbs-Duhem.
-
     `inserted` is for the infinite fluid, `expected`, the probability that a place is free by the equation of
     state, for this number of particles. A row `works` with `enough` frames that have a free place; `ln_q` is
     NaN if it does not.
@@ -135,12 +134,12 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
     hits = sum(int(np.count_nonzero(replica.successes)) for replica in replicas)
     frames = sum(len(replica.share) for replica in replicas)
     chance = average([_chance(replica) for replica in replicas])
-    finite = float(theory.insertion_finite_size_correction(eta, dimension, gas.count))
+    finite = float(insertion_finite_size_correction(eta, dimension, gas.count))
     integrated = state.chemical_potential(eta)
     inserted = _minus_log(chance) - finite
     expected = math.exp(-integrated.value - finite)
     resolution = sum(replica.resolution * len(replica.share) ** 2 for replica in replicas) / frames**2
-    stated = theory.excess_chemical_potential, theory.chemical_potential_uncertainty
+    stated = theory.excess_chemical_potential, chemical_potential_uncertainty
     return {
         "dimension": dimension,
         "packing_fraction": eta,
@@ -190,10 +189,9 @@ def _add_partition(rows: list[dict[str, Any]], state: MeasuredState) -> None:
 
 
 def ln_q(eta: np.ndarray, potential: Estimate, dimension: int) -> Estimate:
-    """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials.
-
-    The reference times a polynomial in eta is fitted to the potentials. Its integral over eta is divided by
-    eta. The degrees of freedom of the errors are the smallest of the coefficients.
+    """Compute minus ln Q / N at packing fractions eta (n,) from excess chemical potentials. The reference
+    times a polynomial in eta is fitted to the potentials. Its integral over eta is divided by eta. The
+    degrees of freedom of the errors are the smallest of the coefficients.
     """
     reference = theory.excess_chemical_potential(eta, dimension)
     fit = fit_polynomial(eta, potential / reference - 1.0, powers=POTENTIAL_POWERS)

@@ -23,6 +23,7 @@ from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.figures.equipartition import law, read
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
+from gaspart.theory.granular import cooling_rate_finite_size_factor
 from gaspart.trajectory.reading import open_trajectory
 
 TITLE, CHAPTER = "Granular gases", "Granular matter"
@@ -109,7 +110,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
     for gas in Table(dataset, "gas"):
         dimension, e = gas.dimension, gas.restitution
         which = f"{PARTICLES[dimension]}, restitution {e:g}"
-        finite = float(theory.cooling_rate_finite_size_factor(gas.count, dimension))
+        finite = float(cooling_rate_finite_size_factor(gas.count, dimension))
         yield Claim(
             f"-d ln T / ds over (1 - e^2)/d (1 + a2/4), {which}",
             gas.rate / theory.cooling_rate(e, dimension), finite, 0.005,

@@ -44,10 +44,9 @@ REORDERED = 1e-3  # fraction of all instructions, since the compiler may order s
 
 
 def measure_price(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure costs per event (collision or wall hit), and ratios to the scene without the feature.
-
-    Points that count instructions add those of each engine's kernel, and of a kernel whose source does not
-    have the features (`stripped`).
+    """Measure costs per event (collision or wall hit), and ratios to the scene without the feature. Points
+    that count instructions add those of each engine's kernel, and of a kernel whose source does not have the
+    features (`stripped`).
     """
     groups: dict[tuple, list[dict]] = {}
     for job in (_price_job(point) for point in points if point.job == "measure_cost"):
@@ -151,10 +150,9 @@ collisions are not shared. More threads share them unevenly, which Amdahl's law 
 
 
 def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float) -> np.ndarray:
-    """Compute the speed-up by threads for N particles (Amdahl, AFIPS Conf. Proc. 30, 483 (1967)).
-
-    `serial` is the fraction of the work that runs on one core. `overhead` is the number of particles whose
-    work on one core takes as long as starting and joining threads.
+    """Compute the speed-up by threads for N particles (Amdahl, AFIPS Conf. Proc. 30, 483 (1967)). `serial` is
+    the fraction of the work that runs on one core. `overhead` is the number of particles whose work on one
+    core takes as long as starting and joining threads.
     """
     shared, waited = (1.0 - serial) / np.asarray(cores), overhead / np.asarray(count)
     return np.asarray(1.0 / (serial + shared + waited))
@@ -162,7 +160,6 @@ def speed_up(cores: ArrayLike, count: ArrayLike, serial: float, overhead: float)
 
 def measure_cores(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure speeds relative to one run on one core, and fit `speed_up` to each gas and engine with threads.
-
     `same` is 1 if all bits equal the bits on one core. A speed is NaN if the machine has too few cores.
     """
     jobs = [_cores_job(point) for point in points]
@@ -201,10 +198,9 @@ def _cores_job(point: Point) -> dict:
 
 
 def fit_speed_up(gas: Table) -> dict:
-    """Fit the speed-ups for all numbers of particles and cores (except `SLABS`).
-
-    The model is linear in its parameters: 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N. A parameter at its
-    bound 0 has the uncertainty 0. The result is NaN if fewer than two speeds are known.
+    """Fit the speed-ups for all numbers of particles and cores (except `SLABS`). The model is linear in its
+    parameters: 1 / speed - 1 / p = s (1 - 1 / p) + N_0 / N. A parameter at its bound 0 has the uncertainty 0.
+    The result is NaN if fewer than two speeds are known.
     """
     from scipy.optimize import nnls
 

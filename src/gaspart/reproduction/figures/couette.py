@@ -29,9 +29,9 @@ from gaspart.reproduction.figures._gap import Gap
 from gaspart.reproduction.figures.transport import ACCURATE, ENSKOG, FEW_PER_CENT, coefficient
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.theory.discretisation import cell_factor, step_factor
-from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP
+from gaspart.theory.shear import ELEMENTARY_SLIP, NORMAL_STRESSES, VELOCITY_SLIP, viscous_heating
 
 TITLE, CHAPTER = "Shear between sliding walls", "Motion and its memory"
 SETTINGS = {
@@ -99,7 +99,6 @@ def _uniform(point: Point, settings: dict) -> dict[str, Any]:
 
 class Flow:
     """Gas between plates: spheres that occupy no volume if `dilute`, as in DSMC; `middle` are inner bins.
-
     `coarse` is the viscosity with the engine's cells and steps, divided by the exact viscosity.
     """
 
@@ -129,11 +128,9 @@ class Flow:
         return 0.0 if self.dilute else float(theory.packing_fraction(density, 3, self.diameter))
 
     def numbers(self, stress: float, pressure: float, *averages: np.ndarray) -> np.ndarray:
-        """Compute the stress and `NUMBERS`, from averages over a run.
-
-        Across the gap T + b u^2 is constant (`theory.viscous_heating`). The viscosity grows like sqrt(T).
-        Therefore u = g x (1 + c x^2) with c = b g^2 / 6 T, to first order in c; g is the gradient in the
-        middle.
+        """Compute the stress and `NUMBERS`, from averages over a run. Across the gap T + b u^2 is constant
+        (`shear.viscous_heating`). The viscosity grows like sqrt(T). Therefore u = g x (1 + c x^2) with c = b
+        g^2 / 6 T, to first order in c; g is the gradient in the middle.
         """
         density, middle = averages[0], self.middle
         velocity, temperature, energies = _profile(*averages)
@@ -144,7 +141,7 @@ class Flow:
         eta = self.packing_fraction(mean)
         enskog = float(theory.enskog_viscosity(eta, 3, self.diameter, temperature=within)) * self.coarse
         half, width = 0.5 * self.gap.length, float(np.abs(x).max()) + 0.5 * (x[1] - x[0])
-        heated = float(theory.viscous_heating(eta, 3)) * gradient**2
+        heated = float(viscous_heating(eta, 3)) * gradient**2
         bend = heated / (6.0 * within)
         centre = gradient * (1.0 - 0.6 * bend * width**2)  # the slope of x^3 by least squares is 3/5 width^2
         edge, at_edge = centre * half * (1.0 + bend * half**2), centre * (1.0 + 3.0 * bend * half**2)
@@ -203,7 +200,6 @@ def _measure_flow(point: Point, settings: dict) -> dict[str, Any]:
 
 def _averages(run: Run, gap: Gap, blocks: int, bins: int) -> tuple[np.ndarray, ...]:
     """Average over K blocks of a run: stress and pressure on the walls, then per volume in each of B bins.
-
     These are particles (K, B), momentum along the flow (K, B), and squared velocities (K, B, d). The last
     item (K, 2) is the change of the total momentum, and of the first moment of the momentum.
     """
@@ -347,7 +343,7 @@ def _of_second_order(flow: Row) -> Iterator[Claim]:
     """Yield claims on the parabola of temperature, and on normal stresses at the walls and in the middle."""
     yield Claim(
         f"-dT/du^2 over half of viscosity over conductivity, walls of speed {flow.speed:g}",
-        flow.heating / float(theory.viscous_heating(flow.packing_fraction, 3)), 1.0, 0.05,
+        flow.heating / float(viscous_heating(flow.packing_fraction, 3)), 1.0, 0.05,
         f"heat made by the stress flows to the walls; {ENSKOG}",
         "work of the walls that is not conserved as heat", alternative=1.5,
     )  # fmt: skip
@@ -408,7 +404,7 @@ def _draw_temperature(axis: Axes, wide: Table) -> None:
             first = flows[0]
             square = (first.speed * first.flow.value) ** 2
             style.points(axis, square, first.temperature, kind=kind, label=name)
-            slope, reach = float(theory.viscous_heating(0.0, 3)), np.array([0.0, square.max()])
+            slope, reach = float(viscous_heating(0.0, 3)), np.array([0.0, square.max()])
             top = first.temperature.value[square.argmin()]
             axis.plot(reach, top - slope * reach, color=style.COLOURS[kind], lw=0.8)
     labels = r"squared velocity of the gas $u^2$", "temperature / wall temperature"

@@ -19,7 +19,7 @@ from gaspart.reproduction.figure import Parts
 from gaspart.reproduction.jobs.pack import GROWTH
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.limits import CLOSE_PACKING
+from gaspart.scene.sizes import CLOSE_PACKING
 
 TITLE, CHAPTER = "Random insertion", "Equation of state and structure"
 # Largest gap, in diameters, between two particles of a jammed packing that count as touching. Contacts at the
@@ -31,9 +31,8 @@ BACKBONE = 4  # least contacts of a sphere that is held in place; other spheres 
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure packing fraction and contacts per sphere; keep the first replica for the picture.
-
-    Contacts are those of spheres that do not rattle, NaN for inserted spheres.
+    """Measure packing fraction and contacts per sphere; keep the first replica for the picture. Contacts are
+    those of spheres that do not rattle, NaN for inserted spheres.
     """
     inner = {"position": ("particle", "axis"), "length": ("axis",)}
     units = dict.fromkeys(("position", "radius", "length"), "length")
@@ -71,10 +70,9 @@ def _mean(values: np.ndarray) -> tuple[float, float]:
 
 
 def contacts(positions: np.ndarray, radius: float, lengths: np.ndarray) -> float:
-    """Count contacts per sphere in a periodic packing (N, 3), for spheres that do not rattle.
-
-    Each of these spheres has at least four contacts with other such spheres. An isostatic packing has 6 - 6/N
-    contacts per sphere.
+    """Count contacts per sphere in a periodic packing (N, 3), for spheres that do not rattle. Each of these
+    spheres has at least four contacts with other such spheres. An isostatic packing has 6 - 6/N contacts per
+    sphere.
     """
     from scipy.spatial import cKDTree
 
@@ -188,4 +186,4 @@ def _draw_bounds(axis: Axes, packings: Table, grown: Table) -> None:
     style.letter(axis, "(c)")
 
 
-FIGURES = {"densest_fill": Parts({}, measure, claims, draw)}
+FIGURES = {"densest_fill": Parts({}, measure, claims, draw, key=2)}

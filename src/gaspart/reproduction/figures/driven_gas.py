@@ -17,6 +17,7 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
+from gaspart.theory.granular import driven_cumulant, finite_size_cumulant
 
 TITLE, CHAPTER = "Granular gases", "Granular matter"
 
@@ -66,7 +67,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
         e, dimension, power = gas.restitution, gas.dimension, gas.power
         which = f"{PARTICLES[dimension]}, restitution {e:g}"
         balance = float(theory.driven_temperature(e, dimension, power, gas.packing_fraction))
-        cumulant = theory.finite_size_cumulant(theory.driven_cumulant(e, dimension), gas.count, dimension)
+        cumulant = finite_size_cumulant(driven_cumulant(e, dimension), gas.count, dimension)
         yield Claim(
             f"steady temperature over that of the energy balance, {which}",
             gas.temperature / balance, 1.0, 0.015,
@@ -87,8 +88,8 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
     for dimension, own in gases.by("dimension"):
         # All gases of a dimension by least squares; a single gas is not conclusive.
         heated, cooling = (
-            theory.finite_size_cumulant(of(own.restitution, dimension), own.count, dimension)
-            for of in (theory.driven_cumulant, theory.fourth_cumulant)
+            finite_size_cumulant(of(own.restitution, dimension), own.count, dimension)
+            for of in (driven_cumulant, theory.fourth_cumulant)
         )
         weight = (cooling - heated) / own.cumulant.error**2
         norm = float(weight @ (cooling - heated))
@@ -112,8 +113,8 @@ def draw(dataset: xr.Dataset) -> Figure:
         balance = theory.driven_temperature(e, dimension, gases.power, gases.packing_fraction)
         style.points(upper, e, gases.temperature / balance, kind=kind, label=name)
         style.points(lower, e, gases.cumulant, kind=kind, label=name)
-        for of, line in ((theory.driven_cumulant, "-"), (theory.fourth_cumulant, ":")):
-            own = theory.finite_size_cumulant(of(curve, dimension), gases.count[0], dimension)
+        for of, line in ((driven_cumulant, "-"), (theory.fourth_cumulant, ":")):
+            own = finite_size_cumulant(of(curve, dimension), gases.count[0], dimension)
             lower.plot(curve, own, color=style.COLOURS[kind], linestyle=line, zorder=1)
     style.label_axes(upper, r"restitution $\epsilon$", r"$T$ / $T$ of energy balance")
     style.label_axes(lower, r"restitution $\epsilon$", r"fourth cumulant $a_2$", "upper right")

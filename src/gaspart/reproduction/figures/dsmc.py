@@ -31,7 +31,7 @@ from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.theory import bulk
 from gaspart.theory.discretisation import CELL_COEFFICIENTS, STEP_COEFFICIENTS, cell_factor, step_factor
 from gaspart.theory.heat import free_molecular_flux
@@ -101,9 +101,8 @@ def _runs(point: Point) -> Iterator[Run]:
 
 
 def _fluxes(point: Point) -> dict[str, Any]:
-    """Measure viscosity and conductivity of an infinite gas by Green and Kubo, up to the longest lag.
-
-    The transfer at collisions is the part of the viscosity that cells add.
+    """Measure viscosity and conductivity of an infinite gas by Green and Kubo, up to the longest lag. The
+    transfer at collisions is the part of the viscosity that cells add.
     """
     gas = plain_gas(point.scene)
     shear, heat = (
@@ -123,20 +122,17 @@ def _fluxes(point: Point) -> dict[str, Any]:
 
 
 def _running_diffusion(point: Point) -> np.ndarray:
-    """Compute D of each replica (R,) at the longest lag, divided by the value of a dilute gas.
-
-    A particle has only N - 1 partners, and therefore keeps its velocity longer. In the frame of the centre of
-    mass, the mean square velocity is lower by the same factor. At a given density this D is therefore
-    independent of N.
+    """Compute D of each replica (R,) at the longest lag, divided by the value of a dilute gas. A particle has
+    only N - 1 partners, and therefore keeps its velocity longer. In the frame of the centre of mass, the mean
+    square velocity is lower by the same factor. At a given density this D is therefore independent of N.
     """
     dilute = theory.enskog_diffusion(**plain_gas(point.scene).parameters, contact=1.0)
     return np.array([average_correlations(run.data).running[-1] for run in _runs(point)]) / float(dilute)
 
 
 def _dense(point: Point) -> dict[str, Any]:
-    """Measure Z, collision rate and D of the dense-gas model, divided by theory for N particles.
-
-    Model and theory use the contact value of Carnahan and Starling.
+    """Measure Z, collision rate and D of the dense-gas model, divided by theory for N particles. Model and
+    theory use the contact value of Carnahan and Starling.
     """
     gas = plain_gas(point.scene)
     excess, rate = [], []
@@ -176,11 +172,10 @@ SHORT, NARROW = 1.0, 0.6  # largest step and width of cells at which the transfe
 
 
 def _fit_transfer(gases: Table) -> dict[str, Estimate]:
-    """Fit the transfer at collisions, divided by width^2, linearly in width and step.
-
-    In a wider cell, a particle is often still near its last collision at the next one, and returns the
-    momentum that it received. The same happens if there are several collisions in a step. Therefore the
-    transfer is less than its limit, by terms linear in width and step.
+    """Fit the transfer at collisions, divided by width^2, linearly in width and step. In a wider cell, a
+    particle is often still near its last collision at the next one, and returns the momentum that it
+    received. The same happens if there are several collisions in a step. Therefore the transfer is less than
+    its limit, by terms linear in width and step.
     """
     names = ("coefficient", "width_slope", "step_slope")
     fluxes = gases[gases.part == "fluxes"]
@@ -301,9 +296,8 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def _coarse(axis: Axes, gases: Table, along: str, other: str) -> None:
-    """Draw coefficients and theory along widths or steps, for points whose `other` resolution is fine.
-
-    The effect of the `other` resolution is removed.
+    """Draw coefficients and theory along widths or steps, for points whose `other` resolution is fine. The
+    effect of the `other` resolution is removed.
     """
     factors = {"width": cell_factor, "step": step_factor}
     fine = gases[getattr(gases, other) < FINE]

@@ -24,7 +24,12 @@ from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.restitution import Restitution
-from gaspart.theory.rough import ROUGH_START_UNCERTAINTY
+from gaspart.theory.rough import (
+    ROUGH_START_UNCERTAINTY,
+    rough_cooling,
+    rough_start_excess,
+    rough_wall_difference,
+)
 
 TITLE, CHAPTER = "Granular gases", "Granular matter"
 SETTINGS = {
@@ -77,10 +82,9 @@ def inertia(point: Point) -> float:
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure four groups of points.
-
-    Particles of `walls` hit only rough walls. Points with a tangential restitution below 1 are `cooling`. Of
-    the others, points with an equilibration are in `equilibrium`; points without it `start` without spins.
+    """Measure four groups of points. Particles of `walls` hit only rough walls. Points with a tangential
+    restitution below 1 are `cooling`. Of the others, points with an equilibration are in `equilibrium`;
+    points without it `start` without spins.
     """
     between = [point for point in points if not point.scene.is_periodic]
     points = [point for point in points if point not in between]
@@ -112,7 +116,6 @@ def _start(point: Point) -> dict[str, Any]:
 
 def _initial_decay(collisions: np.ndarray, translation: np.ndarray, rotation: np.ndarray) -> float:
     """Fit the initial decay of ln (T_tr - T_rot) by a parabola in s, until a fifth of the difference is left.
-
     The noise of the difference is nearly the same at all s.
     """
     difference = translation - rotation
@@ -152,11 +155,10 @@ def _cooling(point: Point, steady_from: float) -> dict[str, Any]:
 
 
 def _walls(point: Point) -> dict[str, Any]:
-    """Measure temperatures between two rough walls, over T_par at the start.
-
-    T_par = m <v^2> for each direction along the walls, T_rot = I <w^2> for each of as many components of spin
-    that a hit changes. `exchange` is T_rot over theory, by least squares until MIXING; `wall_ratio`, T_rot /
-    T_par over theory after MIXED.
+    """Measure temperatures between two rough walls, over T_par at the start. T_par = m <v^2> for each
+    direction along the walls, T_rot = I <w^2> for each of as many components of spin that a hit changes.
+    `exchange` is T_rot over theory, by least squares until MIXING; `wall_ratio`, T_rot / T_par over theory
+    after MIXED.
     """
     scene = point.scene
     kind, along = scene.species[0], np.array(scene.container.periodic)
@@ -171,7 +173,7 @@ def _walls(point: Point) -> dict[str, Any]:
         time = run.time * np.sqrt(kind.temperature / kind.mass) / gap
         translation = kind.mass * squares[:, along].sum(axis=1)
         samples.append(np.stack([translation, rotation]) / translation[0])
-    expected = 0.5 * (1.0 - theory.rough_wall_difference(time, inertia(point)))
+    expected = 0.5 * (1.0 - rough_wall_difference(time, inertia(point)))
     early, late = time <= MIXING, time >= MIXED
     weights = expected[early] / (expected[early] @ expected[early])
     ratio = expected[late].sum() / (1.0 - expected[late]).sum()
@@ -189,7 +191,7 @@ def _walls(point: Point) -> dict[str, Any]:
     }
 
 
-BOLTZMANN = "homogeneous Boltzmann equation, direct simulation (gaspart.theory.boltzmann); "
+BOLTZMANN = "homogeneous Boltzmann equation, direct simulation (tests/theory/homogeneous.py); "
 STATISTICAL = "statistical, of the direct simulation"
 
 
@@ -223,14 +225,13 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
 
 def _decay(gas: Row) -> Iterator[Claim]:
     """Yield the claims on the initial decay without spins, and on the difference where theory's is largest.
-
     There the assumption of Maxwellian velocities is least accurate.
     """
     q = gas.inertia
     expected = 3.0 * q / (1.0 + q) ** 2
     frames = Table(gas.dataset, "frame")
     frames = frames[np.isfinite(frames.collisions)]  # without variables that only other points have
-    beyond = np.asarray(theory.rough_start_excess(q, frames.collisions))
+    beyond = np.asarray(rough_start_excess(q, frames.collisions))
     most = np.abs(np.nan_to_num(beyond)).argmax()
     at, is_computed = frames[most], np.isfinite(beyond[most])
     s, rotation = at.collisions, at.rotation
@@ -255,7 +256,7 @@ def _decay(gas: Row) -> Iterator[Claim]:
 
 def _steady(gas: Row) -> Claim:
     q, tangential = gas.cooling_inertia, gas.tangential
-    matches = [line for line in theory.rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
+    matches = [line for line in rough_cooling() if np.allclose(line[:3], (q, tangential, 1.0))]
     ratio, error = matches[0][3:] if matches else (theory.rough_ratio(q, tangential), 0.0)
     maxwell = theory.rough_ratio(q, tangential) / ratio
     return Claim(
@@ -306,7 +307,7 @@ def _ratios(axis: Axes, cooling: Table, equilibrium: Table) -> None:
         style.points(axis, cooled.tangential, cooled.steady_ratio, kind=kind)
         elastic = np.ones(len(still))
         style.points(axis, elastic, still.equilibrium_ratio, kind=kind, hollow=True, clip_on=False)
-    computed = theory.rough_cooling()
+    computed = rough_cooling()
     computed = computed[np.isin(computed[:, 0], cooling.cooling_inertia)]
     axis.plot(computed[:, 1], computed[:, 3], "x", color=style.DATA, zorder=5, label="Boltzmann equation")
     axis.set(xlim=(-1.0, 1.0), xticks=np.linspace(-1.0, 1.0, 5), ylim=(0.0, 1.08))
@@ -318,7 +319,7 @@ def _at_walls(axis: Axes, gases: Table) -> None:
     fine = np.linspace(0.0, np.nanmax(gases.wall_time), 200)
     for kind, gas in enumerate(gases):
         label = rf"{PARTICLES[gas.wall_dimension]}, $q={gas.wall_inertia:g}$"
-        difference = theory.rough_wall_difference(fine, gas.wall_inertia)
+        difference = rough_wall_difference(fine, gas.wall_inertia)
         axis.plot(fine, 0.5 * (1.0 + difference), color=style.COLOURS[kind], zorder=1)
         style.points(axis, gas.wall_time, gas.wall_translation, kind=kind, label=label)
         axis.plot(fine, 0.5 * (1.0 - difference), color=style.COLOURS[kind], zorder=1)

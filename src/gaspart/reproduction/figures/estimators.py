@@ -35,7 +35,6 @@ FILLED = 0.2  # least density of a bin over the mean density; other bins are par
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure ratios of the variance of counts to that of other estimators, for each point and width of bins.
-
     The ratios are those of each replica, from blocks of time; the result is their mean.
     """
     cases = [(point, width) for point in points for width in settings["widths"]]
@@ -52,7 +51,6 @@ def _row(case: tuple[Point, float]) -> dict[str, Any]:
 
 def _compare(run: Run, width: float) -> dict[str, float]:
     """Compare the estimators of the density: medians of all bins, and the mean of the bins at the walls.
-
     `mean_square` is that of (counts - impulses) / error over its value for Student's distribution;
     `additions` are those to the tally per tested pair of particles.
     """
@@ -74,9 +72,8 @@ def _compare(run: Run, width: float) -> dict[str, float]:
 
 
 def pressures_of(run: Run) -> dict[str, float]:
-    """Compare pressures by impulses alone and with known means: squared errors, and relative difference.
-
-    The results are means of both walls; with known means both have the same pressure, except for rounding.
+    """Compare pressures by impulses alone and with known means: squared errors, and relative difference. The
+    results are means of both walls; with known means both have the same pressure, except for rounding.
     """
     start = float(run.time[0])
     both = (components(data, "pressure", start) for data in (run.data.assign_attrs(tallies="[]"), run.data))
@@ -89,9 +86,8 @@ def pressures_of(run: Run) -> dict[str, float]:
 
 
 def blocks_of(run: Run, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the mean particle numbers (blocks, bins), by counts and by impulses.
-
-    Raises SceneError if the width is no multiple of the bins of the run.
+    """Compute the mean particle numbers (blocks, bins), by counts and by impulses. Raises SceneError if the
+    width is no multiple of the bins of the run.
     """
     axis, has = run.dimension - 1, read_impulses(run.data)
     length = float(run.scene.container.lengths[axis])

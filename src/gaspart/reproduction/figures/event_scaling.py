@@ -31,10 +31,9 @@ SETTINGS = {
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the cost of an event, and its exponents in N by search method and dimension.
-
-    The pair tests of the search "pairs" are compared with N(N-1)/2 for every event, plus one final search
-    that finds no further event.
+    """Measure the cost of an event, and its exponents in N by search method and dimension. The pair tests of
+    the search "pairs" are compared with N(N-1)/2 for every event, plus one final search that finds no further
+    event.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points),

@@ -92,7 +92,6 @@ class Fill:
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure failures per particle against packing fraction, and saturation, of each container.
-
     `final_spread` is the standard deviation of a single fill, `filled` the mean packing fraction at `time`.
     Saturation is that of `saturated` containers, the approach to it of periodic ones.
     """
@@ -146,11 +145,10 @@ def _read(point: Point) -> Fill:
 
 
 def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute mean packing fraction, failures per placed particle, and their error, (bins,).
-
-    The bins are of equal width, from 0 to the densest fill. Results are NaN if less than half of the replicas
-    placed a particle in the bin, because the others are a biased sample. The error is a jackknife error over
-    the replicas. It is at least the scatter of the geometric distribution.
+    """Compute mean packing fraction, failures per placed particle, and their error, (bins,). The bins are of
+    equal width, from 0 to the densest fill. Results are NaN if less than half of the replicas placed a
+    particle in the bin, because the others are a biased sample. The error is a jackknife error over the
+    replicas. It is at least the scatter of the geometric distribution.
     """
     failures, successes = fill.trials()
     states = np.arange(failures.shape[1])
@@ -170,9 +168,8 @@ def failures_by_density(fill: Fill, bins: int) -> tuple[np.ndarray, np.ndarray, 
 
 
 def saturation(fill: Fill, window: float) -> tuple[float, float, float]:
-    """Fit the packing fraction at t = infinity, its error from at least two replicas, and the slope.
-
-    For each replica, a straight line of eta against t^(-1/d) is fitted by least squares.
+    """Fit the packing fraction at t = infinity, its error from at least two replicas, and the slope. For each
+    replica, a straight line of eta against t^(-1/d) is fitted by least squares.
     """
     times = fill.window(window)
     x = times ** (-1.0 / fill.dimension)
@@ -196,9 +193,8 @@ def approach_exponent(fill: Fill, window: float) -> tuple[float, float]:
 
 
 def dilute_failures(fill: Fill, up_to: float) -> tuple[float, float]:
-    """Compute failures below the packing fraction `up_to`, divided by those expected for each particle.
-
-    The error follows from the geometric distribution: sqrt(sum of f (1 + f)) divided by the sum of f.
+    """Compute failures below the packing fraction `up_to`, divided by those expected for each particle. The
+    error follows from the geometric distribution: sqrt(sum of f (1 + f)) divided by the sum of f.
     """
     failures, _ = fill.trials()
     states = np.arange(failures.shape[1])

@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.state.random import stream
 
 TITLE, CHAPTER = "Thin films", "Equation of state and structure"
@@ -70,9 +70,8 @@ class Slit:
         return mean_of([fit.values[0] for fit in fits])
 
     def chemical_potential(self, insertions: int, seed: int | tuple[int, ...]) -> Estimate:
-        """Estimate ln[(N + 1) / (V p)] by Widom's insertion, V the volume accessible to centres.
-
-        p is the probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)).
+        """Estimate ln[(N + 1) / (V p)] by Widom's insertion, V the volume accessible to centres. p is the
+        probability that a further sphere fits (Widom, J. Chem. Phys. 39, 2808 (1963)).
         """
         from scipy.spatial import cKDTree
 
@@ -96,7 +95,6 @@ class Slit:
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure pressures of all slits, the profile of the widest, and the same by density functional theory.
-
     `at_bulk` is the pressure at exactly the chemical potential of the bulk, to first order.
     """
     points = sorted(points, key=lambda point: point.extents[2][2])

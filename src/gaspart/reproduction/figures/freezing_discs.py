@@ -36,6 +36,7 @@ from gaspart.reproduction.figures._freezing import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
+from gaspart.theory.packing import CRYSTAL_OF_1024_DISCS
 
 TITLE, CHAPTER = "Freezing and melting", "Equation of state and structure"
 SETTINGS = {
@@ -49,7 +50,6 @@ COMPARED = 870  # discs with published pressures; such points are compared, and 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure P and psi_6 of discs against packing fraction from both starts, plateau, and structure.
-
     `compared_pressure` is that of `COMPARED` discs, if there are such points. Structure is that of the last
     start.
     """
@@ -71,10 +71,8 @@ def _disc(point: Point) -> dict[str, Any]:
 
 
 def _plateau(side: Row) -> dict[str, Any]:
-    """Compute the plateau of one start.
-
-    The uncertainty of a point includes half of its drift, and half of the difference between the starts,
-    `unlike`. A run out of equilibrium is therefore uncertain.
+    """Compute the plateau of one start. The uncertainty of a point includes half of its drift, and half of
+    the difference between the starts, `unlike`. A run out of equilibrium is therefore uncertain.
     """
     own = Table(side.dataset, "packing_fraction")
     own = own[np.isfinite(own.pressure.value)]
@@ -172,9 +170,8 @@ def _orientation(state: Row, melted: bool) -> Claim:
 
 
 def _liquid(states: Table) -> Iterator[Claim]:
-    """Yield claims on pressures of liquid discs, for the published number in the published container.
-
-    The virial series is too inaccurate here.
+    """Yield claims on pressures of liquid discs, for the published number in the published container. The
+    virial series is too inaccurate here.
     """
     published = theory.literature("pressure", 2)
     references = {row.packing_fraction: row for row in published[published.container == "29 x 30"]}
@@ -196,7 +193,7 @@ def _liquid(states: Table) -> Iterator[Claim]:
 
 def _crystal(states: Table) -> Iterator[Claim]:
     """Yield claims on the pressure of crystals of the published number, as certain as the literature."""
-    eta, expected, allowance = theory.CRYSTAL_OF_1024_DISCS
+    eta, expected, allowance = CRYSTAL_OF_1024_DISCS
     for state in states[(np.abs(states.packing_fraction - eta) < 1e-4) & (states.count == 1024)]:
         yield Claim(
             f"pressure of the crystal of 1024 discs at packing fraction {eta:g}, k_B T / sigma^2",
@@ -208,10 +205,9 @@ def _crystal(states: Table) -> Iterator[Claim]:
 
 
 def _equilibrium(states: Table) -> Claim:
-    """Return the claim on the number of differences that agree with equilibrium.
-
-    The probability is an exact binomial one. A fluid that is compressed beyond the melting point of the
-    ordered phase freezes with defects. They do not heal in any such run.
+    """Return the claim on the number of differences that agree with equilibrium. The probability is an exact
+    binomial one. A fluid that is compressed beyond the melting point of the ordered phase freezes with
+    defects. They do not heal in any such run.
     """
     from scipy.special import bdtrc, ndtri
 

@@ -33,6 +33,7 @@ from gaspart.reproduction.figures._freezing import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries
+from gaspart.theory.packing import ETOMICA_CRYSTAL_UNCERTAINTY
 
 TITLE, CHAPTER = "Freezing and melting", "Equation of state and structure"
 CRYSTAL_ORDER = 0.3  # smallest global Q_6 of a crystal; it is 0.45 and more near melting, 0.03 in the fluid
@@ -40,10 +41,9 @@ LOCAL_CRYSTAL = 0.32  # smallest averaged local q_6, half-way between 0.48 (crys
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence.
-
-    Z is that of the infinite system, `reference` that of the equation for the branch of the run, NaN beyond
-    its range. A `slab` holds both phases; its profiles and fraction of crystal are those of both halves.
+    """Measure Z and Q_6 of spheres against packing fraction from both starts, and coexistence. Z is that of
+    the infinite system, `reference` that of the equation for the branch of the run, NaN beyond its range. A
+    `slab` holds both phases; its profiles and fraction of crystal are those of both halves.
     """
     slabs = [point for point in points if point.settings.get("arrangement") == "slab"]
     dataset = measure_states([point for point in points if point not in slabs], _sphere)
@@ -146,7 +146,7 @@ def _branch(one: Row) -> Claim:
         phase, source = "crystal", "etomica's fit to simulations of its authors"
         origin = "its distance from runs behind [Pieprzyk 2019]; the next order of finite numbers"
         next_order = (theory.CLOSE_PACKING[3] / eta - 1.0) * one.finite_size
-        allowance = math.hypot(theory.ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
+        allowance = math.hypot(ETOMICA_CRYSTAL_UNCERTAINTY * reference, next_order)
     else:
         phase, source = "fluid", "[Kolafa 2004]"
         origin = "its distance from etomica's equation, or from the virial series"

@@ -47,10 +47,9 @@ def measure_two_kinds(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def ringing(point: Point) -> dict[str, Estimate]:
-    """Fit the relative amplitude of the kinetic energy's oscillation at the start of the sample, t = 0.
-
-    The fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall; the error follows
-    from their scatter.
+    """Fit the relative amplitude of the kinetic energy's oscillation at the start of the sample, t = 0. The
+    fit is mean + e^{-t / decay} (a cos w t + b sin w t) to all frames after the fall; the error follows from
+    their scatter.
     """
     from scipy.optimize import curve_fit
 
@@ -74,10 +73,9 @@ def ringing(point: Point) -> dict[str, Estimate]:
 
 
 def layer_fractions(point: Point, layers: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Compute the fraction of the first species in equal layers of the container, (layers,).
-
-    The error is the binomial error of a single frame. Frames of one sample are close in time, so that the
-    composition of a layer is nearly the same in all. The source has one frame.
+    """Compute the fraction of the first species in equal layers of the container, (layers,). The error is the
+    binomial error of a single frame. Frames of one sample are close in time, so that the composition of a
+    layer is nearly the same in all. The source has one frame.
     """
     column, [sample] = field(point), stretches(point, 1)
     grid = Grid.line(-0.5 * column.diameter, column.height + 0.5 * column.diameter, layers)

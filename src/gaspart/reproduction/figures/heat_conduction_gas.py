@@ -20,7 +20,7 @@ from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.figures._gap import Gap, averages
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 from gaspart.theory.enskog import enskog_conductivity, mean_free_path
 from gaspart.theory.geometry import packing_fraction
 from gaspart.theory.heat import (
@@ -56,10 +56,9 @@ INNER = dict.fromkeys(_PROFILES, ("bin",)) | dict.fromkeys(_APPROACH, ("frame",)
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the heat flux through gases of one kind of particles, and their profiles.
-
-    `free` is the flux of particles that collide only with these walls, `full` with walls that accommodate
-    fully. Theory of a fluid (`slab_...`) is for spheres between such walls at Knudsen numbers below FLUID.
+    """Measure the heat flux through gases of one kind of particles, and their profiles. `free` is the flux of
+    particles that collide only with these walls, `full` with walls that accommodate fully. Theory of a fluid
+    (`slab_...`) is for spheres between such walls at Knudsen numbers below FLUID.
     """
     return table("point", points, _measure_gas, settings, inner=INNER)
 
@@ -112,9 +111,8 @@ def _measure_gas(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray, diameter: float) -> float:
-    """Compute the mean over both walls of |T_gas - T_wall| / (l dT/dx).
-
-    T^(3/2) of the gas is extrapolated from bins (B,) away from the walls.
+    """Compute the mean over both walls of |T_gas - T_wall| / (l dT/dx). T^(3/2) of the gas is extrapolated
+    from bins (B,) away from the walls.
     """
     slope, start = np.polyfit(position, (energy / density) ** 1.5, 1)
     power = start + slope * np.array([0.0, gap.length])
@@ -126,7 +124,6 @@ def jump(gap: Gap, position: np.ndarray, energy: np.ndarray, density: np.ndarray
 
 def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
     """Measure the temperature of the half at the hot wall less that of the other, from a uniform start on.
-
     Standard errors of the mean over replicas are for Maxwellian velocities of spheres of mass 1; squares of
     their components have the relative variance 2.
     """
@@ -152,9 +149,8 @@ def approach(point: Point, slab: Slab) -> dict[str, np.ndarray]:
 
 
 def _expected_approach(time: np.ndarray, slab: Slab, density: float, diameter: float) -> np.ndarray:
-    """Compute `approach` by the heat equation, with the conductivity at the mean density and temperature.
-
-    The difference converges to its value in the steady `slab`. Temperature jumps at the walls increase the
+    """Compute `approach` by the heat equation, with the conductivity at the mean density and temperature. The
+    difference converges to its value in the steady `slab`. Temperature jumps at the walls increase the
     effective gap.
     """
     hot, halves = slab.position < 0.5 * slab.position[-1], []

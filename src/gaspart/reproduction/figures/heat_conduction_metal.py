@@ -38,7 +38,6 @@ SETTINGS = {
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure temperatures of electrons and modes, energies over the `expected` heat capacity, and dE/dT.
-
     `regular` is True if scatterers are listed one by one, on a grid, instead of placed at random.
     """
     dataset = table("point", points, measure_metal, settings, inner=("bin",))
@@ -50,10 +49,9 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def measure_metal(point: Point, settings: dict) -> dict[str, Any]:
-    """Measure one point.
-
-    The variance of E is the mean square of the deviation from the known mean of E. Its estimate therefore has
-    no bias, even if samples are correlated. Its logarithm is closer to a Gaussian number.
+    """Measure one point. The variance of E is the mean square of the deviation from the known mean of E. Its
+    estimate therefore has no bias, even if samples are correlated. Its logarithm is closer to a Gaussian
+    number.
     """
     scene = point.scene
     gap, fixed = Gap.of(scene), per_particle(scene, "fixed").astype(bool)
@@ -103,10 +101,9 @@ def measure_metal(point: Point, settings: dict) -> dict[str, Any]:
 
 
 def bend(temperature: np.ndarray) -> float:
-    """Fit the second-order coefficient of the temperature against position in the gap.
-
-    The outermost bins are left out, because electrons come directly from the walls there. The result is NaN
-    for fewer than five bins.
+    """Fit the second-order coefficient of the temperature against position in the gap. The outermost bins are
+    left out, because electrons come directly from the walls there. The result is NaN for fewer than five
+    bins.
     """
     if temperature.size < 5:
         return np.nan
@@ -144,7 +141,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
             yield Claim(
                 "second-order coefficient of the electrons' temperature against position over the gap",
                 row.bend, Estimate(row.cold * METAL_BEND, row.cold * METAL_BEND_ERROR), 0.1 * row.cold,
-                "the Boltzmann equation of electrons and modes (gaspart.theory.electrons)",
+                "the Boltzmann equation of electrons and modes (tests/theory/electrons.py)",
                 "electrons that conduct as a gas does, whose T^(3/2) is linear",
                 allowance_source="the statistical error of its direct simulation",
                 alternative=-0.25 * slope**2 / (level + 0.5 * slope),

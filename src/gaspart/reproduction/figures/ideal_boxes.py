@@ -47,10 +47,9 @@ SETTINGS = {
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the ideal number of boxes of each gas, and the cost of the source's numbers.
-
-    `most` is the maximum number of boxes per particle, whose width is a diameter. A penalty is the time at a
-    number of boxes divided by the least time. The exponent in N is of the gases of one radius.
+    """Measure the ideal number of boxes of each gas, and the cost of the source's numbers. `most` is the
+    maximum number of boxes per particle, whose width is a diameter. A penalty is the time at a number of
+    boxes divided by the least time. The exponent in N is of the gases of one radius.
     """
     runs = sorted(
         (xr.load_dataset(point.path) for point in points), key=lambda run: (-run.radius, run.attrs["count"])
@@ -208,9 +207,8 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def _ideal(axis: Axes, gases: Table, kind: int, label: str) -> None:
-    """Draw ideal numbers with 95 % intervals; hollow without one.
-
-    An arrow marks gases whose time still falls at the finest timed partition.
+    """Draw ideal numbers with 95 % intervals; hollow without one. An arrow marks gases whose time still falls
+    at the finest timed partition.
     """
     number, interior = gases.count, gases.ideal_interior.astype(bool)
     best, low, high = gases.ideal * number, gases.ideal_low * number, gases.ideal_high * number

@@ -37,9 +37,8 @@ YEAR = 365.25 * 86400.0
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure steps with the cheapest of several partitions, with one box, and with a neighbour list.
-
-    The exponents are of the work (pair tests and box visits) of all gases, and of the time in each of the
+    """Measure steps with the cheapest of several partitions, with one box, and with a neighbour list. The
+    exponents are of the work (pair tests and box visits) of all gases, and of the time in each of the
     source's figures. The naive method is extrapolated to the source's number of particles.
     """
     runs = sorted(

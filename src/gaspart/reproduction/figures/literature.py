@@ -26,7 +26,8 @@ from gaspart.reproduction.figure import PARTICLES, Parts, pressure
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
-from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.scene.gas import Gas
 from gaspart.trajectory.reading import open_trajectory
 
 TITLE, CHAPTER = "Equation of state", "Equation of state and structure"
@@ -38,9 +39,8 @@ STRETCH = 0.3, 1.0
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure each quantity for which there are published values, `theirs`.
-
-    Claims on values that are not `judged` belong to other figures.
+    """Measure each quantity for which there are published values, `theirs`. Claims on values that are not
+    `judged` belong to other figures.
     """
     values = [(point, row) for point in points for row in _values(point)]
     rows = [row | {"judged": int(point.experiment in settings["judged"])} for point, row in values]
@@ -72,11 +72,10 @@ def _published(gas: Gas, quantity: str) -> np.recarray:
 
 
 def _of_infinite_system(point: Point, gas: Gas) -> Iterator[dict[str, Any]]:
-    """Yield Z of a fluid or a crystal of spheres beside the mean of all published runs.
-
-    Our Z is canonical (see `analysis.series.compressibility`). The published Z is for fixed energy and
-    momentum, which does not shift Z of a crystal to first order. The next order of our Z in V / V_c - 1 is
-    unknown, and is part of its error.
+    """Yield Z of a fluid or a crystal of spheres beside the mean of all published runs. Our Z is canonical
+    (see `analysis.series.compressibility`). The published Z is for fixed energy and momentum, which does not
+    shift Z of a crystal to first order. The next order of our Z in V / V_c - 1 is unknown, and is part of its
+    error.
     """
     eta = gas.packing_fraction
     fluid = eta <= theory.HIGHEST_PACKING_FRACTION[3]

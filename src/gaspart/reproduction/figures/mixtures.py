@@ -27,8 +27,9 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.gas import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
+from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor
-from gaspart.trajectory.pairs import pairs_of
+from gaspart.trajectory.correlator import pairs_of
 
 TITLE, CHAPTER = "Mixtures", "Equation of state and structure"
 PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
@@ -36,7 +37,6 @@ PAIRS = {"large-large": (0, 0), "large-small": (0, 1), "small-small": (1, 1)}
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure Z of the infinite gas and, for two sizes, the virial, contact values and rates of pairs.
-
     Theories stand beside them, such as contact_boublik. A rate counts collisions of a particle of the first
     kind with all of the second.
     """
@@ -80,7 +80,6 @@ def _replica(run: Run, two: bool) -> dict[str, Estimate]:
 
 def _virial(run: Run) -> Estimate:
     """Compute the sum of |dr . dp| over that of Maxwellian velocities for each pair's collisions, minus 1.
-
     The mean of |dr . dp| for colliding particles of reduced mass mu is sigma sqrt(2 pi mu k_B T).
     """
     weights = []
@@ -97,7 +96,7 @@ def _theories(gas: Mixture) -> dict[str, Any]:
     """Return Z by each theory; for two sizes also contact value and rate of each pair."""
     row: dict[str, Any] = {}
     z, sizes = theory.mixture_compressibility_factor, gas.sizes
-    for name, dimensions in theory.MIXTURE_THEORIES.items():
+    for name, dimensions in MIXTURE_THEORIES.items():
         if gas.dimension not in dimensions:
             continue
         row[name] = z(*sizes, theory=name)

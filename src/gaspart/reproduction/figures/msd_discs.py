@@ -31,11 +31,10 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _discs(point: Point) -> dict[str, Any]:
-    """Measure a point, until sound has crossed the container: then particles are affected by its size.
-
-    Zero total momentum affects them at once: without it all would share a velocity of mean square d / N.
-    Therefore 1 / N is added to C, t / N to D(t), d t^2 / N to the msd. `slope_expected` is that of the
-    container's hydrodynamic modes, fitted alike.
+    """Measure a point, until sound has crossed the container: then particles are affected by its size. Zero
+    total momentum affects them at once: without it all would share a velocity of mean square d / N. Therefore
+    1 / N is added to C, t / N to D(t), d t^2 / N to the msd. `slope_expected` is that of the container's
+    hydrodynamic modes, fitted alike.
     """
     state = shared.State(point)
     start = LOGARITHM_FROM / state.collision_rate

@@ -21,6 +21,7 @@ from gaspart.reproduction.figure import ENSKOG_LIMIT, Parts
 from gaspart.reproduction.figures import _displacement as shared
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries, table
+from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY, VISCOSITY_RATIO_UNCERTAINTY
 
 TITLE, CHAPTER = "Displacement and velocity autocorrelation", "Motion and its memory"
 # D is the slope of the msd from t to 2t; t is LINEAR_FROM collisions per particle, or so many decay times of
@@ -30,13 +31,12 @@ DILUTE_BAND = 0.007  # relative difference of D from Enskog's; by Erpenbeck and 
 
 
 def spheres(point: Point) -> dict[str, Any]:
-    """Measure D of a point, its correction to an infinite container, and the curves.
-
-    With zero total momentum, D of N particles is smaller by (N - 1) / N, exactly in a dilute gas, where each
-    other particle carries -1 / (N - 1) of a particle's momentum; the curves are divided by this. The rest is
-    hydrodynamic: Yeh and Hummer's, with the measured viscosity plus rho D, as a particle also leaves a vortex
-    by its own diffusion and each mode decays with nu + D (Ernst, Hauge and van Leeuwen 1970). Its uncertainty
-    is that of the viscosity and (2 pi mean free path / side)^2, the next order in the slowest mode.
+    """Measure D of a point, its correction to an infinite container, and the curves. With zero total
+    momentum, D of N particles is smaller by (N - 1) / N, exactly in a dilute gas, where each other particle
+    carries -1 / (N - 1) of a particle's momentum; the curves are divided by this. The rest is hydrodynamic:
+    Yeh and Hummer's, with the measured viscosity plus rho D, as a particle also leaves a vortex by its own
+    diffusion and each mode decays with nu + D (Ernst, Hauge and van Leeuwen 1970). Its uncertainty is that of
+    the viscosity and (2 pi mean free path / side)^2, the next order in the slowest mode.
     """
     state = shared.State(point)
     start = max(LINEAR_FROM / state.collision_rate, SETTLE_SHEAR_TIMES * state.shear_time)
@@ -62,7 +62,7 @@ def spheres(point: Point) -> dict[str, Any]:
     carried = float(theory.number_density(state.packing_fraction, 3)) * diffusion.value
     correction = float(theory.yeh_hummer(state.side, state.viscosity + carried))
     next_order = (2.0 * math.pi * state.mean_free_path / state.side) ** 2
-    relative = min(1.0, math.hypot(theory.VISCOSITY_RATIO_UNCERTAINTY, next_order))
+    relative = min(1.0, math.hypot(VISCOSITY_RATIO_UNCERTAINTY, next_order))
     return row | {
         "diffusion": diffusion,
         "correction": correction,
@@ -118,7 +118,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
     for gas, ratio in zip(dense, ratios, strict=True):
         yield Claim(
             f"D over Erpenbeck and Wood's at packing fraction {gas.packing_fraction:g}",
-            ratio, Estimate(1.0, theory.ERPENBECK_WOOD_UNCERTAINTY), 0.015, "[Erpenbeck 1991]",
+            ratio, Estimate(1.0, ERPENBECK_WOOD_UNCERTAINTY), 0.015, "[Erpenbeck 1991]",
             "correlated collisions missing, a msd not yet straight, a wrong finite-size correction",
             allowance_source="its largest difference from [Pieprzyk 2019]",
         )  # fmt: skip
@@ -152,7 +152,7 @@ def _density(axis: Axes, largest: Table) -> None:
     eta = largest.packing_fraction
     enskog = theory.enskog_diffusion(eta, 3)
     curve = np.linspace(0.0, 1.08 * eta.max(), 200)
-    ratio, band = theory.erpenbeck_wood_ratio(curve), theory.ERPENBECK_WOOD_UNCERTAINTY
+    ratio, band = theory.erpenbeck_wood_ratio(curve), ERPENBECK_WOOD_UNCERTAINTY
     axis.fill_between(curve, ratio * (1 - band), ratio * (1 + band), color=style.REFERENCE, alpha=0.2, lw=0)
     axis.plot(curve, ratio, color=style.REFERENCE, label=rf"Erpenbeck & Wood, $\pm{100.0 * band:g}\,\%$")
     axis.axhline(1.0, color=style.DATA, lw=0.8, label="Enskog")
@@ -173,7 +173,7 @@ def _size(axis: Axes, sizes: Table) -> None:
     axis.plot(x, fit, color=style.DATA, lw=0.8, label="fit")
     hydrodynamic = sizes.size_limit - first.correction * first.side * x
     axis.plot(x, hydrodynamic, color=style.REFERENCE, ls="--", label="Yeh & Hummer's slope")
-    published = Estimate([1.0], theory.ERPENBECK_WOOD_UNCERTAINTY)
+    published = Estimate([1.0], ERPENBECK_WOOD_UNCERTAINTY)
     published = float(theory.erpenbeck_wood_diffusion(eta)) * published
     look: dict[str, Any] = {"color": style.REFERENCE, "marker": "s", "clip_on": False}
     style.points(axis, [0.0], published, label="Erpenbeck & Wood", **look)

@@ -172,11 +172,9 @@ def _check_claim(where: str, claim: Mapping[str, Any], at: Sequence[float], curv
 def measure_point(
     point: Point, names: Sequence[str], part: bool
 ) -> tuple[dict[str, list[Observable]], float, dict[str, SceneError]]:
-    """Measure observables of all replicas of a point.
-
-    Returns the observables by name, the mean duration of a replica, and error messages by name of observables
-    that cannot be measured. Frames after the equilibration are used. With `part`, the first quarter of each
-    run is left out instead.
+    """Measure observables of all replicas of a point. Returns the observables by name, the mean duration of a
+    replica, and error messages by name of observables that cannot be measured. Frames after the equilibration
+    are used. With `part`, the first quarter of each run is left out instead.
     """
     start = None if part else point.schedule.equilibration
     results: dict[str, list[Observable]] = {name: [] for name in names}
@@ -198,11 +196,10 @@ def measure_point(
 
 
 def mean_of(replicas: list[Observable], part: str) -> np.ndarray | None:
-    """Average independent runs, or compute another property of the mean.
-
-    The property `part` is the standard uncertainty (_error), theory (_theory), or the uncertainty of theory
-    (_theory_error). Without a theory, None is returned. Runs that stop at a required accuracy may have curves
-    of different lengths. Then only the common range is used.
+    """Average independent runs, or compute another property of the mean. The property `part` is the standard
+    uncertainty (_error), theory (_theory), or the uncertainty of theory (_theory_error). Without a theory,
+    None is returned. Runs that stop at a required accuracy may have curves of different lengths. Then only
+    the common range is used.
     """
     quantity = replicas[0].attrs["quantity"]
     if part.startswith("_theory") and any(replica.theory is None for replica in replicas):
@@ -219,10 +216,9 @@ _PARTS = {"value": "", "value_error": "_error", "theory": "_theory", "theory_err
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure an observable of each point, averaged over its replicas, ordered by series and `against`.
-
-    Each of several named values, such as one for each face, is a series. A curve has the dimension `along`.
-    Raises SceneError for an observable that cannot be measured.
+    """Measure an observable of each point, averaged over its replicas, ordered by series and `against`. Each
+    of several named values, such as one for each face, is a series. A curve has the dimension `along`. Raises
+    SceneError for an observable that cannot be measured.
     """
     name, against = settings["observable"], settings["against"]
     rows, source = [], ""
@@ -260,9 +256,8 @@ def _by_name(replicas: list[Observable]) -> dict[str, list[Observable]]:
 
 
 def _other(point: Point, points: list[Point], against: str) -> str:
-    """Return what distinguishes a point from others at the same value of `against`.
-
-    These are the other values of its grid, and the experiment if there are several.
+    """Return what distinguishes a point from others at the same value of `against`. These are the other
+    values of its grid, and the experiment if there are several.
     """
     several = len({other.experiment for other in points}) > 1
     varied = [part for part in point.name.split(",") if not part.startswith(f"{against}=")]
@@ -311,9 +306,8 @@ def _text(subject: str, point: Row) -> str:
 
 
 def _claims_at(point: Row, stated: dict) -> Iterator[Claim]:
-    """Yield the claim about a point, if it has the theory that is claimed.
-
-    The half width and the required uncertainty of a claim of theory are fractions of the theoretical value.
+    """Yield the claim about a point, if it has the theory that is claimed. The half width and the required
+    uncertainty of a claim of theory are fractions of the theoretical value.
     """
     that, expected = stated["that"], stated.get("value")
     common: dict[str, Any] = {"measured": point.value, "fails_if": stated["fails_if"]}

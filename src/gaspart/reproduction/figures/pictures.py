@@ -19,16 +19,15 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, entries
-from gaspart.scene.limits import ball_volume
+from gaspart.scene.sizes import ball_volume
 
 TITLE, CHAPTER = "Pictures", "Pictures and checks"
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Return the last frame of the first replica, and counts over the last frames of all replicas.
-
-    `resolved` is the number of overlaps that the time-stepped engine detected and removed in the step before
-    each frame. The mean speed is of the last species, with the standard error over particles.
+    """Return the last frame of the first replica, and counts over the last frames of all replicas. `resolved`
+    is the number of overlaps that the time-stepped engine detected and removed in the step before each frame.
+    The mean speed is of the last species, with the standard error over particles.
     """
     point = points[0]
     scene, lengths = point.scene, np.array(point.scene.container.lengths)
@@ -65,9 +64,8 @@ ROUNDING = 1e-5  # largest overlap, in diameters, of frames in single precision
 def overlapping(
     positions: np.ndarray, radii: np.ndarray, lengths: np.ndarray, periodic: Sequence[bool]
 ) -> int:
-    """Count the pairs of particles (N, d) that overlap by more than rounding.
-
-    Particles larger than twice the median radius are few. They are compared with all others.
+    """Count the pairs of particles (N, d) that overlap by more than rounding. Particles larger than twice the
+    median radius are few. They are compared with all others.
     """
     from scipy.spatial import cKDTree
 

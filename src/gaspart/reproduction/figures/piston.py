@@ -23,14 +23,14 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, merge_with_prefixes, table
 from gaspart.theory.enskog import enskog_longitudinal_viscosity
 from gaspart.theory.speeds import mean_speed
+from gaspart.theory.state import adiabatic_temperature, constant_enthalpy_factor
 
 TITLE, CHAPTER = "Pressure on walls and pistons", "Equation of state and structure"
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure each replica of paths (in each frame), of states, and of expansions.
-
-    Volume and temperature of a path are over their first values.
+    """Measure each replica of paths (in each frame), of states, and of expansions. Volume and temperature of
+    a path are over their first values.
     """
     kinds: dict[str, tuple] = {
         "path": (_path, "packing_fraction"),
@@ -71,11 +71,10 @@ def _length(run: Run) -> np.ndarray:
 
 
 def _heating(run: Run, length: np.ndarray, energy: np.ndarray) -> np.ndarray:
-    """Compute the increase (frame,) of ln T by viscous heating.
-
-    The gas between wall and piston flows with a velocity proportional to the distance from the wall. The heat
-    is the longitudinal viscosity (Enskog) times the square of the rate of strain. Along an adiabat the ratio
-    of two temperatures is constant, so that the increments add up.
+    """Compute the increase (frame,) of ln T by viscous heating. The gas between wall and piston flows with a
+    velocity proportional to the distance from the wall. The heat is the longitudinal viscosity (Enskog) times
+    the square of the rate of strain. Along an adiabat the ratio of two temperatures is constant, so that the
+    increments add up.
     """
     from scipy.integrate import cumulative_trapezoid
 
@@ -90,7 +89,6 @@ def _heating(run: Run, length: np.ndarray, energy: np.ndarray) -> np.ndarray:
 
 def _state(run: Run) -> dict[str, np.ndarray]:
     """Measure the density of the middle half, and P / (n k T), fluctuation and energy of the piston by it.
-
     The fluctuation is N times the variance of the volume over the square of the volume at this density; the
     energy is twice the piston's over k T.
     """
@@ -111,9 +109,8 @@ def _state(run: Run) -> dict[str, np.ndarray]:
 
 
 def _expansion(run: Run) -> dict[str, np.ndarray]:
-    """Measure energy, speed and share in the half that was empty, in the second half of the frames.
-
-    The energy is over the first one, the mean speed over that of equilibrium at the first temperature.
+    """Measure energy, speed and share in the half that was empty, in the second half of the frames. The
+    energy is over the first one, the mean speed over that of equilibrium at the first temperature.
     """
     scene, energy = run.scene, run.data["kinetic_energy"].values
     half = len(energy) // 2
@@ -143,7 +140,7 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
         eta, dimension = state.density.mean(), state.dimension
         yield Claim(
             f"compressibility factor at constant pressure over the reference, {_name(state)}", _factor(state),
-            float(theory.constant_enthalpy_factor(eta, dimension, state.count)), 0.005,
+            float(constant_enthalpy_factor(eta, dimension, state.count)), 0.005,
             f"the equation of state of the infinite fluid, with the volume's fluctuations in {ENSEMBLE}, "
             "to first order in 1/N",
             "a load that is not the pressure of the gas, or a density disturbed by the walls",
@@ -184,7 +181,7 @@ def exponents(path: Row) -> np.ndarray:
     """Compute 1 + 2/d times the ratio of ln T to theory, without viscous heating, shape (replica, frame)."""
     dimension, first = path.dimension, path.packing_fraction
     eta = np.minimum(first / path.volume, theory.HIGHEST_PACKING_FRACTION[dimension])
-    expected = theory.adiabatic_temperature(eta, first, dimension)
+    expected = adiabatic_temperature(eta, first, dimension)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = (np.log(path.temperature) - path.heating) / np.log(expected)
     return np.asarray(1.0 + 2.0 / dimension * ratio)
@@ -199,9 +196,8 @@ def _factor(state: Row) -> Estimate:
 
 
 def isothermal_variance(packing_fraction: float | np.ndarray, dimension: int) -> np.ndarray:
-    """Compute N times the relative variance of the volume at constant temperature.
-
-    This variance follows from the speed of sound without the adiabatic term.
+    """Compute N times the relative variance of the volume at constant temperature. This variance follows from
+    the speed of sound without the adiabatic term.
     """
     adiabatic = theory.speed_of_sound(packing_fraction, dimension) ** 2
     heating = 2.0 / dimension * theory.compressibility_factor(packing_fraction, dimension) ** 2
@@ -256,7 +252,7 @@ def _draw_path(axis: Axes, path: Row) -> None:
     volume, temperature = path.volume.mean(axis=0), Estimate(*means_of(path.temperature))
     style.points(axis, volume, temperature, kind=kind, label=PARTICLES[dimension])
     fine = np.geomspace(volume.min(), DOUBLED, 60)
-    expected = theory.adiabatic_temperature(first / fine, first, dimension)
+    expected = adiabatic_temperature(first / fine, first, dimension)
     label = rf"adiabat, $\gamma={EXPONENTS[dimension]}$"
     axis.plot(fine, expected, color=style.COLOURS[kind], zorder=1, label=label)
 
@@ -269,7 +265,7 @@ def _draw_states(middle: Axes, lower: Axes, states: Table, dimension: int) -> No
     for axis, ratio in ((middle, factor), (lower, variance)):
         style.points(axis, eta, ratio, kind=dimension - 2, label=name)
     fine, colour = np.linspace(0.0, eta.max(), 60), style.COLOURS[dimension - 2]
-    finite = theory.constant_enthalpy_factor(fine, dimension, states.count[0])
+    finite = constant_enthalpy_factor(fine, dimension, states.count[0])
     middle.plot(fine, finite, color=colour, zorder=1, label=f"{name}, finite $N$")
     isothermal = isothermal_variance(fine, dimension) * theory.speed_of_sound(fine, dimension) ** 2
     lower.plot(fine, isothermal, color=colour, linestyle="--", label=f"{name}, constant $T$")

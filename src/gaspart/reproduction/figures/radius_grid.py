@@ -41,10 +41,9 @@ ETA, COUNT = "packing fraction", "count"  # what is constant in a series
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure Z of event-driven points, and counted operations of both engines, with predictions.
-
-    Counts are per collision (event-driven), or per particle and step; `crossings` is per particle and time,
-    over kinetic theory.
+    """Measure Z of event-driven points, and counted operations of both engines, with predictions. Counts are
+    per collision (event-driven), or per particle and step; `crossings` is per particle and time, over kinetic
+    theory.
     """
     etas: dict[str, set[float]] = {}
     for point in points:
@@ -91,9 +90,8 @@ def _crossings(replicas: list[Series], scene: Scene, per_side: int) -> Estimate:
 
 
 def crossings_per_collision(packing_fraction: float, width: float, per_side: int, dimension: int) -> float:
-    """Compute 2 d sqrt(2 / pi) (n - 1) / (n w nu), with the width w of a box in diameters.
-
-    Here nu is Enskog's collision rate of a particle with k_B T = m = sigma = 1.
+    """Compute 2 d sqrt(2 / pi) (n - 1) / (n w nu), with the width w of a box in diameters. Here nu is
+    Enskog's collision rate of a particle with k_B T = m = sigma = 1.
     """
     rate = float(theory.collision_rate(packing_fraction, dimension))
     return 2.0 * dimension * math.sqrt(2.0 / math.pi) * (per_side - 1) / (per_side * width * rate)

@@ -28,7 +28,6 @@ BINS = 10  # classes of equal probability
 
 def measure(tables: Sequence[str | Path], settings: dict) -> xr.Dataset:
     """Collect the deviations of all claimed values, with sums over those `scattered` by figure and by class.
-
     An allowance for the uncertainty of the theory makes deviations smaller; such claims are not scattered.
     """
     from scipy.special import ndtr
@@ -93,10 +92,8 @@ def claims(dataset: xr.Dataset) -> Iterator[Claim]:
 
 
 def mean_deviation(figures: Table) -> Estimate:
-    """Compute the mean of all scattered deviations; NaN for fewer than two figures.
-
-    Values of one figure come from the same runs, and may deviate together. Therefore the error is the
-    jackknife error over figures.
+    """Compute the mean of all scattered deviations; NaN for fewer than two figures. Values of one figure come
+    from the same runs, and may deviate together. Therefore the error is the jackknife error over figures.
     """
     stating = figures[figures.number > 0]
     if len(stating) < 2:

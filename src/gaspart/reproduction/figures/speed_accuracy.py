@@ -42,7 +42,6 @@ FITTED = 3  # errors in a fit of their order: two always have one, even if the e
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure errors over the time steps of each gas and setting, and costs per contact of the exact gas.
-
     Long runs of the time-stepped engine have the error in the steady state. `order` is that of the error in
     the time step. `dsmc_bias` is a bound on the bias of Z of the models of DSMC.
     """
@@ -70,9 +69,8 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def error_orders(row: dict, largest: float) -> list[tuple[float, float]]:
-    """Fit the order of each observable's error in the time step; its error is scaled by the scatter.
-
-    The order is NaN without `FITTED` errors of equal sign.
+    """Fit the order of each observable's error in the time step; its error is scaled by the scatter. The
+    order is NaN without `FITTED` errors of equal sign.
     """
     orders = []
     for bias, error in zip(row["bias"], row["bias_error"], strict=True):
@@ -116,10 +114,8 @@ def _time_per_collision(event: Timing) -> dict[str, Any]:
 
 
 def _models(timed: Timings, cells: dict[float, Cells]) -> list[dict[str, Any]]:
-    """Return the cost of each DSMC model, with its cheapest step, and its error of Z, in each gas.
-
-    Z does not depend on the step. For the Enskog model, the error due to cells must have been measured, in
-    spheres.
+    """Return the cost of each DSMC model, with its cheapest step, and its error of Z, in each gas. Z does not
+    depend on the step. For the Enskog model, the error due to cells must have been measured, in spheres.
     """
     rows = []
     for event in (timing for timing in timed if timing.setting == "event"):
@@ -254,9 +250,8 @@ def _legends(first: Axes, cost: Axes) -> None:
 
 
 def _errors(axis: Axes, at: Row, kind: int, line: str) -> None:
-    """Draw the absolute errors of one observable, and the fitted order.
-
-    An error above two standard errors is drawn filled, otherwise hollow at this bound.
+    """Draw the absolute errors of one observable, and the fitted order. An error above two standard errors is
+    drawn filled, otherwise hollow at this bound.
     """
     size, error, step = 100.0 * np.abs(at.bias.value), 100.0 * at.bias.error, at.time_step
     seen = size > 2.0 * error

@@ -25,10 +25,10 @@ from gaspart.reproduction.claims import Claim, Estimate
 from gaspart.reproduction.figure import Blocks, Parts, kurtosis, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.entropy import ENTROPY_UNCERTAINTY, Energies, entropy_deficit, equal_speeds
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope
 
 TITLE, CHAPTER = "Speed distributions", "Motion and its memory"
 HISTOGRAM = {
@@ -58,16 +58,14 @@ class Velocities:
 
 
 def never_hit(velocities: np.ndarray) -> np.ndarray:
-    """Compute the fraction (T,) of particles that no particle has hit since the first frame.
-
-    A wall only changes signs, so all |v_k| keep their bits; a collision changes all (with probability 1).
+    """Compute the fraction (T,) of particles that no particle has hit since the first frame. A wall only
+    changes signs, so all |v_k| keep their bits; a collision changes all (with probability 1).
     """
     return (np.abs(velocities) == np.abs(velocities[0])).all(axis=-1).mean(axis=-1)
 
 
 def shared_means(samples: list[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return mean and error of each group of runs (R, ...), from the scatter of all groups about their means.
-
     A group of few runs has no good estimate of its own scatter; the physics is the same.
     """
     freedom = sum(len(group) for group in samples) - len(samples)
@@ -146,9 +144,8 @@ def _relaxing(run: Velocities, grid: Grid, frames: np.ndarray) -> dict[str, Any]
 
 
 def _entropy_deficit(replicas: list[Velocities], grid: Grid) -> Estimate:
-    """Measure the entropy below that of equilibrium (T,), of the pooled histograms of the replicas.
-
-    The expected bias of K occupied classes and n speeds, (K - 1) / 2n, is subtracted (Miller 1955).
+    """Measure the entropy below that of equilibrium (T,), of the pooled histograms of the replicas. The
+    expected bias of K occupied classes and n speeds, (K - 1) / 2n, is subtracted (Miller 1955).
     """
     edges = grid.edges[0]
     dimension, count = replicas[0].velocities.shape[2], replicas[0].velocities.shape[1] * len(replicas)
@@ -175,11 +172,10 @@ def _bins(grid: Grid) -> dict[str, Any]:
 
 
 def _rate_between_walls(scene: Scene, temperature: float) -> float:
-    """Compute the collision rate per particle of a dilute gas between walls.
-
-    It is Enskog's times (N - 1) / N, and times the probability that the partner in a collision, at distance
-    sigma in the direction n, is within the walls too: the mean of prod_k (1 - sigma |n_k| / L_k), to first
-    order, with <|n_k|> = 1/2 in 3D and 2/pi in 2D. The density is uniform up to the walls.
+    """Compute the collision rate per particle of a dilute gas between walls. It is Enskog's times (N - 1) /
+    N, and times the probability that the partner in a collision, at distance sigma in the direction n, is
+    within the walls too: the mean of prod_k (1 - sigma |n_k| / L_k), to first order, with <|n_k|> = 1/2 in 3D
+    and 2/pi in 2D. The density is uniform up to the walls.
     """
     diameter = 2.0 * scene.largest_radius
     accessible = [upper - lower for lower, upper in zip(*scene.reach(scene.largest_radius), strict=True)]
@@ -195,10 +191,9 @@ def _rate_between_walls(scene: Scene, temperature: float) -> float:
 
 
 def measure_distribution(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the speeds in equilibrium, beside Maxwell's distribution without a fit.
-
-    The frames after equilibration are independent if some 3 collisions per particle lie between them. The
-    energy is conserved: <u^2> = 1 in every frame, which takes a degree of freedom of chi-square.
+    """Measure the speeds in equilibrium, beside Maxwell's distribution without a fit. The frames after
+    equilibration are independent if some 3 collisions per particle lie between them. The energy is conserved:
+    <u^2> = 1 in every frame, which takes a degree of freedom of chi-square.
     """
     grid = Grid.line(0.0, settings["highest"], settings["bins"])
     steps = np.linspace(0.0, settings["highest"], 201)
@@ -265,9 +260,8 @@ MAXWELL = "Maxwell's distribution (exact)"
 
 
 def claim_relaxation(dataset: xr.Dataset) -> Iterator[Claim]:
-    """Yield the claims on kurtosis, fraction never hit and entropy at source A's times, for each engine.
-
-    The scatter of the runs includes the scatter of the number of collisions.
+    """Yield the claims on kurtosis, fraction never hit and entropy at source A's times, for each engine. The
+    scatter of the runs includes the scatter of the number of collisions.
     """
     for gas in Table(dataset, "engine"):
         by, relaxation = f"({ENGINE_TITLES[gas.engine]} engine)", theory.relaxation(gas.dimension)
@@ -306,7 +300,7 @@ def claim_relaxation(dataset: xr.Dataset) -> Iterator[Claim]:
         )  # fmt: skip
         yield Claim(
             f"initial slope of the kurtosis per collision and particle {by}",
-            gas.initial_slope, theory.initial_kurtosis_slope(gas.dimension), 0.015,
+            gas.initial_slope, initial_kurtosis_slope(gas.dimension), 0.015,
             "Boltzmann's collision integral (exact)",
             "the first collisions do not scatter as hard spheres do",
         )  # fmt: skip
@@ -370,7 +364,7 @@ def draw_relaxation(dataset: xr.Dataset) -> Figure:
     s = np.linspace(0.0, longest, 300)
     kurtoses.plot(s, relaxation.kurtosis(s), color=style.DATA, label="kinetic theory", zorder=2)
     early = s[s < 1.6]
-    initial = 1.0 + theory.initial_kurtosis_slope(engines.dimension) * early
+    initial = 1.0 + initial_kurtosis_slope(engines.dimension) * early
     kurtoses.plot(early, initial, color=style.GREY, ls=":", label="initial slope 8/35")
     style.level(kurtoses, theory.kurtosis(engines.dimension), ls="--", label="Maxwell: 5/3")
     unhit.semilogy(s, relaxation.never_hit(s), color=style.DATA, zorder=2)

@@ -52,10 +52,9 @@ UNITS = {"energy": "kinetic energy", "momentum": "sum of all |p|", "overlap": "c
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of one scene in one engine: verdict, relative drifts, deepest overlap, contacts.
-
-    The momentum is NaN if walls absorb it; `missed` contacts are negative if some are spurious; `bits` are
-    those of the final state.
+    """Outcome of one scene in one engine: verdict, relative drifts, deepest overlap, contacts. The momentum
+    is NaN if walls absorb it; `missed` contacts are negative if some are spurious; `bits` are those of the
+    final state.
     """
 
     verdict: str
@@ -156,7 +155,6 @@ def deepest_overlap(state: State, periodic: tuple[bool, ...]) -> float:
 
 def run_guarded(work: Callable, items: Sequence, limit: float) -> list:
     """Return `work(item)` for each item; None if it takes more than `limit` seconds, or ends its process.
-
     Compiled code cannot be interrupted. Therefore it runs in a child process, which can be killed.
     """
     results: list = []
@@ -304,10 +302,8 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def _cell(outcome: TableRow, name: str, wide: bool, scale: Any) -> tuple[str, Any, str]:
-    """Return text, background and ink of a cell.
-
-    The text is the power of ten of an error, for contacts their number, if there is space; a dot if walls
-    absorb momentum. Missed contacts are coloured by their share.
+    """Return text, background and ink of a cell. The text is the power of ten of an error, for contacts their
+    number, if there is space; a dot if walls absorb momentum. Missed contacts are coloured by their share.
     """
     if outcome.verdict == REFUSED:
         return reason(outcome.message)[0], "#e6e6e6", "black"

@@ -37,7 +37,9 @@ from gaspart.reproduction.figures.chemical_potential import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import Gas, plain_gas
+from gaspart.scene.facts import plain_gas
+from gaspart.scene.gas import Gas
+from gaspart.theory.structure import percus_yevick_rdf, percus_yevick_structure_factor
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"
 SETTINGS = {
@@ -54,16 +56,15 @@ WIDTH = 0.005  # of the bins of g(r) at contact, in diameters
 WINDOW = 0.45
 BINS, SHELLS, WAVES = 160, 80, 24  # drawn bins of g(r) and S(k); wave vectors in each bin of S(k)
 LAWS = {  # Verlet-Weis, Percus-Yevick
-    "g": (theory.verlet_weis_rdf, theory.percus_yevick_rdf),
-    "s": (theory.verlet_weis_structure_factor, theory.percus_yevick_structure_factor),
+    "g": (theory.verlet_weis_rdf, percus_yevick_rdf),
+    "s": (theory.verlet_weis_structure_factor, percus_yevick_structure_factor),
 }
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`.
-
-    Contact values are times (N - 1) / N. `g_gain` and `s_gain` are root mean square distances of curves of
-    spheres from Verlet-Weis over those from Percus-Yevick.
+    """Measure g(r), S(k) and derived numbers at each point of the experiments `measured`. Contact values are
+    times (N - 1) / N. `g_gain` and `s_gain` are root mean square distances of curves of spheres from
+    Verlet-Weis over those from Percus-Yevick.
     """
     measured = [point for point in points if point.experiment in settings["measured"]]
     inner = {"g": ("bin",), "distance": ("bin",), "s": ("shell",), "wave_number": ("shell",)}
@@ -92,7 +93,6 @@ def _row(point: Point, states: dict[int, MeasuredState], settings: dict) -> dict
 
 def _blocks(run: Run, gas: Gas, low: np.ndarray, curves: tuple, most: int) -> tuple[np.ndarray, ...]:
     """Return means over each block: S at `low`, g near contact, the drawn curves, Z, and collision rate.
-
     `curves` has wave vectors, their shells, and the largest distance. The curves use about `most` frames.
     """
     parts, series = Blocks(run, BLOCKS), series_of(run)
@@ -159,9 +159,8 @@ def _contact_values(near: np.ndarray, z: np.ndarray, rate: np.ndarray, gas: Gas)
 
 
 def _contact_per_rate(gas: Gas) -> float:
-    """Compute the contact value times (N - 1) / N over the reduced collision rate.
-
-    This ratio is exact for N particles. The reference equation of state cancels.
+    """Compute the contact value times (N - 1) / N over the reduced collision rate. This ratio is exact for N
+    particles. The reference equation of state cancels.
     """
     eta, dimension, count = gas.packing_fraction, gas.dimension, gas.count
     excess = theory.compressibility_factor(eta, dimension) - 1.0

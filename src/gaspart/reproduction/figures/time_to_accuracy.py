@@ -79,9 +79,8 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
 
 
 def _predictions(rows: list[dict], timed: Timings, settings: dict) -> xr.Dataset:
-    """Return the CPU time of the cheapest setting of each exact engine, measured and by the model.
-
-    `regret` is the measured cost of the setting that the model chooses, divided by that of the best setting.
+    """Return the CPU time of the cheapest setting of each exact engine, measured and by the model. `regret`
+    is the measured cost of the setting that the model chooses, divided by that of the best setting.
     """
     speeds = _speeds(timed)
     gases = sorted({(row["dimension"], row["packing_fraction"]) for row in rows})
@@ -147,9 +146,8 @@ def _by_table(gas: Gas, choice: Choice, observable: str, speeds: dict) -> Option
 
 
 def _map(points: Sequence[Point], settings: dict, timed: Timings) -> xr.Dataset:
-    """Compute the costs of all engines in spheres of every timed density, and the parts of their errors.
-
-    A cost is infinite if no setting is known to be as accurate, and NaN if the engine was not run. The errors
+    """Compute the costs of all engines in spheres of every timed density, and the parts of their errors. A
+    cost is infinite if no setting is known to be as accurate, and NaN if the engine was not run. The errors
     of model and discretisation are bounds from theory, or from runs if there is no theory. `finite_size` is
     the remainder after theory's correction, `equilibration` a bound on the trace of the initial state, and
     `noise` 1.96 standard errors.
@@ -362,9 +360,8 @@ def duration(seconds: float) -> str:
 
 
 def cheapest_engine(dataset: xr.Dataset) -> Iterator[tuple[int, int, str, float]]:
-    """Yield (fraction, accuracy, engine, cost) of one quantity where any engine was measured.
-
-    The first two are indices. If no engine reaches the accuracy, the engine is "" and the cost infinite.
+    """Yield (fraction, accuracy, engine, cost) of one quantity where any engine was measured. The first two
+    are indices. If no engine reaches the accuracy, the engine is "" and the cost infinite.
     """
     cost = Row(dataset).cost.value  # indices: fraction, accuracy, solver
     for f, a in np.ndindex(*cost.shape[:2]):

@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import ENSKOG_LIMIT, PARTICLES, Parts
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
+from gaspart.scene.facts import plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 TITLE, CHAPTER = "Viscosity and conductivity", "Motion and its memory"
@@ -64,10 +64,9 @@ def _runs(point: Point) -> Iterator[tuple[Run, np.ndarray]]:
 
 
 def coefficient(point: Point, name: str) -> dict[str, Any]:
-    """Measure a coefficient by Green and Kubo (`value`, `running`) and by Helfand (`growth`).
-
-    `difference` is growth over the integral's mean at the same lags, minus 1, from the same runs. `finite` is
-    the coefficient of a dilute gas of as many particles over that of an infinite gas.
+    """Measure a coefficient by Green and Kubo (`value`, `running`) and by Helfand (`growth`). `difference` is
+    growth over the integral's mean at the same lags, minus 1, from the same runs. `finite` is the coefficient
+    of a dilute gas of as many particles over that of an infinite gas.
     """
     flux, enskog, _ = COEFFICIENTS[name]
     gas = plain_gas(point.scene)
@@ -122,10 +121,9 @@ def _growth(lags: np.ndarray, slopes: np.ndarray) -> float:
 
 
 def measure_growth(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure integrals of discs up to each time, and how much they grow over the container's modes.
-
-    `_modes` are shifted to the height of the integral where the comparison starts. `_short_waves` is the
-    fraction of the growth that is due to waves of one to two mean free paths.
+    """Measure integrals of discs up to each time, and how much they grow over the container's modes. `_modes`
+    are shifted to the height of the integral where the comparison starts. `_short_waves` is the fraction of
+    the growth that is due to waves of one to two mean free paths.
     """
     starts = {"viscosity": settings["viscosity_from"], "conductivity": settings["conductivity_from"]}
     return table("point", points, _growing, starts, **_FORM)

@@ -31,6 +31,8 @@ from gaspart.reproduction.figure import PARTICLES, Parts
 from gaspart.reproduction.figures._displacement import MODE_COUPLING, reduced_curves
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
+from gaspart.theory.diffusion import velocity_autocorrelation_tail
+from gaspart.theory.modes import velocity_autocorrelation_modes
 
 TITLE, CHAPTER = "Displacement and velocity autocorrelation", "Motion and its memory"
 SETTINGS = {
@@ -73,7 +75,7 @@ def _row(point: Point, settings: dict) -> dict[str, Any]:
         row["start_rate"] = mean_of([initial_rate(collisions[early], values[early]) for values in samples])
     elif late.sum() >= 4:  # finely sampled runs are too short for the tail
         # 1/N is exactly known, and not part of the tail
-        modes = theory.velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
+        modes = velocity_autocorrelation_modes(time[late], eta, dimension, count) - share
         fits = np.array([fit_tail(collisions[late], values[late] - share, modes) for values in samples])
         row |= {"tail_from": start, "tail_to": stop, "tail_ratio": mean_of(fits[:, 0])}
         row["tail_correction"] = fits[:, 1].mean()
@@ -145,7 +147,7 @@ def _tails(axis: Axes, gases: Table) -> None:
     for kind, gas in enumerate(gases):
         lags = _lags(gas)
         late = lags[lags.collisions > 3.0]
-        tail = theory.velocity_autocorrelation_tail(late.time, gas.packing_fraction, gas.dimension)
+        tail = velocity_autocorrelation_tail(late.time, gas.packing_fraction, gas.dimension)
         axis.plot(late.collisions, tail, color=style.COLOURS[kind], zorder=1)
         seen = lags[lags.correlation.value > 0.0]
         style.points(axis, seen.collisions, seen.correlation, kind=kind, markersize=2.5, label=_name(gas))
@@ -176,7 +178,7 @@ def _ratios(axis: Axes, gases: Table) -> None:
         lags, share = _lags(gas), 1.0 / gas.count
         late = lags[lags.collisions > 5.0]
         state = gas.packing_fraction, gas.dimension, gas.count
-        modes = theory.velocity_autocorrelation_modes(late.time, *state) - share
+        modes = velocity_autocorrelation_modes(late.time, *state) - share
         axis.axvline(gas.sound, color=style.COLOURS[kind], linestyle=":", linewidth=0.8)
         ratio = (late.correlation - share) / modes
         style.points(axis, late.collisions, ratio, kind=kind, markersize=2.5)

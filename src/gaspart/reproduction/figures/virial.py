@@ -22,8 +22,8 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Parts, pressure
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import plain_gas
-from gaspart.theory.virial import linear_tail_uncertainty
+from gaspart.scene.facts import plain_gas
+from gaspart.theory.virial import HIGHEST_ORDER, linear_tail, linear_tail_uncertainty
 
 TITLE, CHAPTER = "Equation of state", "Equation of state and structure"
 _FIT = {
@@ -41,7 +41,6 @@ ONE = {"units": "1"}
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
     """Measure Z and collision rate at each packing fraction, and fit B2, B3, B4 with each of the fits.
-
     `poisson_error` is the error of Z for independent collisions, `held_error` the part of a fitted
     coefficient's error that is due to held coefficients.
     """
@@ -101,18 +100,17 @@ def _fit(pair: tuple[dict, Table], dimension: int) -> dict:
 def fit_coefficients(
     eta: np.ndarray, z: Estimate, dimension: int, free: int, held: bool
 ) -> tuple[Fit, np.ndarray]:
-    """Fit (Z-1)/eta = b_2 + b_3 eta + ... up to b_free, and compute the errors due to held coefficients.
-
-    If `held` is True, the higher coefficients up to B10 have their literature values, and the remaining terms
-    are `theory.linear_tail`; the errors of the fit do not include theirs. Otherwise they are zero: the
+    """Fit (Z-1)/eta = b_2 + b_3 eta + ... up to b_free, and compute the errors due to held coefficients. If
+    `held` is True, the higher coefficients up to B10 have their literature values, and the remaining terms
+    are `virial.linear_tail`; the errors of the fit do not include theirs. Otherwise they are zero: the
     truncated series shows the effect of these terms.
     """
     powers, y = tuple(range(free - 1)), (z - 1.0) / eta
     if not held:
         return fit_polynomial(eta, y, powers=powers), np.zeros(len(powers))
     coefficients, uncertainties = theory.virial_coefficients(dimension)
-    tail = theory.linear_tail(eta, dimension) / eta
-    higher = {order - 2: coefficients[order - 1] for order in range(free + 1, theory.HIGHEST_ORDER + 1)}
+    tail = linear_tail(eta, dimension) / eta
+    higher = {order - 2: coefficients[order - 1] for order in range(free + 1, HIGHEST_ORDER + 1)}
     fit = fit_polynomial(eta, y - tail, powers=powers, fixed=higher)
     # The values are linear in the held terms. A separate fit gives the effect of each uncertainty.
     terms = [uncertainties[power + 1] * eta**power for power in higher]

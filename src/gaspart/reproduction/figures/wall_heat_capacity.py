@@ -16,7 +16,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import Blocks, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
-from gaspart.scene.faces import thermal_face
+from gaspart.scene.boundaries import thermal_face
 
 TITLE, CHAPTER = "Heat between walls", "Gravity, heat and walls"
 SETTINGS = {"blocks": count("stretches of each replica")}

@@ -30,10 +30,9 @@ UNITS |= dict.fromkeys(("pressure", "whole_pressure", "bulk_pressure", "expected
 
 
 def measure(points: list[Point], settings: dict) -> xr.Dataset:
-    """Measure the mean force on a wall over the area that centres can reach, and over its full area.
-
-    `axes` have walls, `length` apart. `bulk_pressure` is that of an infinite fluid of the density N / V.
-    Raises SceneError for containers without walls, or with different distances of walls.
+    """Measure the mean force on a wall over the area that centres can reach, and over its full area. `axes`
+    have walls, `length` apart. `bulk_pressure` is that of an infinite fluid of the density N / V. Raises
+    SceneError for containers without walls, or with different distances of walls.
     """
     return table("point", points, _row, units=UNITS)
 

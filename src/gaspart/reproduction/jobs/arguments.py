@@ -13,7 +13,7 @@ from typing import Any
 
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.scene.scene import Scene
-from gaspart.trajectory.until import Until
+from gaspart.trajectory.run_options import Until
 
 _FORMS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "scene": (Scene.to_dict, Scene.from_dict),
@@ -39,9 +39,8 @@ def to_plain(arguments: dict[str, Any]) -> dict[str, Any]:
 
 
 def from_plain(values: dict[str, Any]) -> dict[str, Any]:
-    """Convert the result of `to_plain` back.
-
-    Raises SceneError for a scene or an engine of another version.
+    """Convert the result of `to_plain` back. Raises SceneError for a scene or an engine of another
+    version.
     """
     return _convert(values, 1)
 

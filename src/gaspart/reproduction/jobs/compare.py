@@ -47,10 +47,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `compare`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `compare`."""
     if point.engine.name != "step":
         raise point.make_error("engine", "must be step with job: compare")
     return {"scene": point.scene, "engines": point.engines, "seed": point.seed(), **intervals(point)}
@@ -64,22 +61,18 @@ def compare(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Run the time-stepped `engines` and the event-driven engine from equal states of a gas.
-
-    There are `samples` states at time intervals `interval`. Each run takes one interval, rounded to whole
-    steps, and at least `LEAST_STEPS`.
-
-    `equilibration` and `interval` are in the scene's time. The dimensions of the result are ``setting`` (the
-    engines) and ``snapshot``. Both runs have ``collisions``; ``virial``, the sum of |dr.dp|; and ``memory``,
-    sum v(0).v(t) / sum v(0)^2. Names of the exact run have the prefix ``exact_``. The exact run also has
-    ``z``. The time-stepped run also has the relative ``energy_drift``, ``deepest_overlap`` divided by the
-    contact distance, and ``pair_tests``.
-
-    The first part of a run is compared with the list of exact events. ``missed`` counts particles that a step
-    should have changed but did not (or too late). ``made_up`` counts particles that a step changed but should
-    not have. ``listed`` is the number of events in the list. These are NaN if the part has too many steps.
-    Over ``setting`` are ``time_step``, ``steps``, and ``refused``, 1 if the engine rejects the step; then all
-    other values are NaN.
+    """Run the time-stepped `engines` and the event-driven engine from equal states of a gas. There are
+    `samples` states at time intervals `interval`. Each run takes one interval, rounded to whole steps, and at
+    least `LEAST_STEPS`. `equilibration` and `interval` are in the scene's time. The dimensions of the result
+    are ``setting`` (the engines) and ``snapshot``. Both runs have ``collisions``; ``virial``, the sum of
+    |dr.dp|; and ``memory``, sum v(0).v(t) / sum v(0)^2. Names of the exact run have the prefix ``exact_``.
+    The exact run also has ``z``. The time-stepped run also has the relative ``energy_drift``,
+    ``deepest_overlap`` divided by the contact distance, and ``pair_tests``. The first part of a run is
+    compared with the list of exact events. ``missed`` counts particles that a step should have changed but
+    did not (or too late). ``made_up`` counts particles that a step changed but should not have. ``listed`` is
+    the number of events in the list. These are NaN if the part has too many steps. Over ``setting`` are
+    ``time_step``, ``steps``, and ``refused``, 1 if the engine rejects the step; then all other values are
+    NaN.
     """
     import numpy as np
 
@@ -159,11 +152,10 @@ def _pair(scene: Scene, engine: TimeStepped, state: State, steps: int, exact: di
 
 
 def _missed_contacts(scene: Scene, engine: TimeStepped, state: State, steps: int, collisions: float) -> dict:
-    """Count particles with missed contacts, and with spurious contacts.
-
-    A step with a missed contact leaves the particle's velocity unchanged, although the exact list has a
-    contact in this step. A step with a spurious contact changes the velocity, although the list has none.
-    Only the first such step counts for each particle, because later ones may follow from it.
+    """Count particles with missed contacts, and with spurious contacts. A step with a missed contact leaves
+    the particle's velocity unchanged, although the exact list has a contact in this step. A step with a
+    spurious contact changes the velocity, although the list has none. Only the first such step counts for
+    each particle, because later ones may follow from it.
     """
     import numpy as np
 

@@ -39,9 +39,8 @@ _PACKAGE = Path(__file__).parents[2]
 
 
 class Strip(ast.NodeTransformer):
-    """Transformer of a syntax tree that removes the branches of absent features.
-
-    Every comparison of such a feature with None is resolved. Code after a return is removed.
+    """Transformer of a syntax tree that removes the branches of absent features. Every comparison of such a
+    feature with None is resolved. Code after a return is removed.
     """
 
     def _evaluate(self, test: ast.expr) -> bool | None:
@@ -84,18 +83,12 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the argument of `count_instructions`.
-
-    Raises SceneError.
-    """
+    """Return the argument of `count_instructions`."""
     return {"scene": point.scene}
 
 
 def count_instructions(scene: Scene) -> PointData:
-    """Count the instructions of each engine's main kernel for a scene.
-
-    The scene should be a plain gas.
-
+    """Count the instructions of each engine's main kernel for a scene. The scene should be a plain gas.
     Returns over engine: `instructions`, and `stripped`, the instructions without the branches of absent
     features. Both are compiled in separate processes with separate caches.
     """

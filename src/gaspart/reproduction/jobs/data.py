@@ -39,10 +39,7 @@ class PointData(NamedTuple):
     attributes: Mapping[str, Any] = _NONE
 
     def write(self, path: str | Path) -> None:
-        """Write a netCDF file that xarray.load_dataset reads.
-
-        May raise OSError.
-        """
+        """Write a netCDF file that xarray.load_dataset reads. May raise OSError."""
         import netCDF4
         import numpy as np
 
@@ -81,9 +78,8 @@ SCAN_TIME_STEPS = list_of(
 
 
 def intervals(point: Point) -> dict:
-    """Return the arguments of a job that divides its run into `samples` intervals.
-
-    The run follows the equilibration.
+    """Return the arguments of a job that divides its run into `samples` intervals. The run follows the
+    equilibration.
     """
     times = point.schedule
     return {

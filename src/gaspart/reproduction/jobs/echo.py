@@ -47,10 +47,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `echo`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `echo`."""
     return {"scene": point.scene, "engine": point.engine, "seeds": point.seeds, **intervals(point)}
 
 
@@ -62,15 +59,13 @@ def echo(
     interval: float,
     samples: int,
 ) -> PointData:
-    """Measure echoes from equilibrium states of a scene, one for each seed.
-
-    The results over ``seed`` and ``sample`` are for runs of 1 to `samples` intervals. ``collisions`` is the
-    number of collisions per particle before the reversal: twice the number of contacts divided by the number
-    of particles. ``echo`` is the root-mean-square distance from the initial state after the return, in
-    diameters. ``divergence`` is the distance at the reversal between two event-driven runs whose initial
-    distance is `DISPLACEMENT`. Over ``seed``: ``exponent`` is the largest Lyapunov exponent per collision of
-    a particle, for the event-driven engine, and NaN for other engines. Attributes describe the gas (`side` in
-    diameters) and the engine.
+    """Measure echoes from equilibrium states of a scene, one for each seed. The results over ``seed`` and
+    ``sample`` are for runs of 1 to `samples` intervals. ``collisions`` is the number of collisions per
+    particle before the reversal: twice the number of contacts divided by the number of particles. ``echo`` is
+    the root-mean-square distance from the initial state after the return, in diameters. ``divergence`` is the
+    distance at the reversal between two event-driven runs whose initial distance is `DISPLACEMENT`. Over
+    ``seed``: ``exponent`` is the largest Lyapunov exponent per collision of a particle, for the event-driven
+    engine, and NaN for other engines. Attributes describe the gas (`side` in diameters) and the engine.
     """
     import numpy as np
 
@@ -118,9 +113,8 @@ def echo(
 
 
 def _exponent(equilibrium: Simulation, interval: float) -> float:
-    """Measure the Lyapunov exponent of a run that is continued until `TANGENT_COLLISIONS`.
-
-    The run is continued by intervals of time.
+    """Measure the Lyapunov exponent of a run that is continued until `TANGENT_COLLISIONS`. The run is
+    continued by intervals of time.
     """
     from gaspart.analysis.lyapunov import lyapunov_exponent  # this loads xarray, which other jobs do not need
 
@@ -134,9 +128,8 @@ def _exponent(equilibrium: Simulation, interval: float) -> float:
 
 
 def _displace(state: State, seed: tuple[int, ...]) -> State:
-    """Return a state in which all particles are displaced at random.
-
-    The displacement is so small that only touching particles can overlap.
+    """Return a state in which all particles are displaced at random. The displacement is so small that only
+    touching particles can overlap.
     """
     import numpy as np
 
@@ -147,9 +140,8 @@ def _displace(state: State, seed: tuple[int, ...]) -> State:
 
 
 def _distance(state: State, other: State) -> float:
-    """Compute the root-mean-square distance between two states, in diameters.
-
-    Positions are between walls, and not periodic.
+    """Compute the root-mean-square distance between two states, in diameters. Positions are between walls,
+    and not periodic.
     """
     import numpy as np
 

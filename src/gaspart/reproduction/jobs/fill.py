@@ -29,25 +29,19 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `fill`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `fill`."""
     if "attempts" not in point.settings:
         raise point.make_error("attempts", "is required with job: fill")
     return {"scene": point.scene, "attempts": point.settings["attempts"], "seeds": point.seeds}
 
 
 def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData:
-    """Fill the container by up to ``attempts`` random positions per particle, once per seed.
-
-    The scene has one species. Its count is the maximum number of particles, which may exceed saturation.
-    Insertion stops when all particles are placed, or when the total number of attempts, ``attempts`` times
-    the count, is reached.
-
-    Returns a dataset with ``failures`` (replica, particle), the number of failed attempts before each
-    particle was placed, or -1 if it was never placed; ``placed`` (replica,); and ``attempts`` (replica,). The
-    attributes of the dataset are packing_fraction_per_particle, side and radius.
+    """Fill the container by up to ``attempts`` random positions per particle, once per seed. The scene has
+    one species. Its count is the maximum number of particles, which may exceed saturation. Insertion stops
+    when all particles are placed, or when the total number of attempts, ``attempts`` times the count, is
+    reached. Returns a dataset with ``failures`` (replica, particle), the number of failed attempts before
+    each particle was placed, or -1 if it was never placed; ``placed`` (replica,); and ``attempts``
+    (replica,). The attributes of the dataset are packing_fraction_per_particle, side and radius.
     """
     import numpy as np
 
@@ -71,19 +65,17 @@ def fill(scene: Scene, attempts: int, seeds: list[tuple[int, ...]]) -> PointData
 
 
 def _fill_once(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int]:
-    """Count failures before each particle (N,), and attempts.
-
-    The number of failures is -1 for a particle that was never placed.
+    """Count failures before each particle (N,), and attempts. The number of failures is -1 for a particle
+    that was never placed.
     """
     before, used, _ = insert(scene, attempts, seed)
     return before, used
 
 
 def insert(scene: Scene, attempts: int, seed: tuple[int, ...]) -> tuple[np.ndarray, int, np.ndarray]:
-    """Insert particles, and count the failures (N,) before each particle.
-
-    The number of failures is -1 for a particle that was never placed. The function also returns the number of
-    attempts, and the positions (M, d) of the placed particles.
+    """Insert particles, and count the failures (N,) before each particle. The number of failures is -1 for a
+    particle that was never placed. The function also returns the number of attempts, and the positions (M, d)
+    of the placed particles.
     """
     import numpy as np
 

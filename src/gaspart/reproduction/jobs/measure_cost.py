@@ -78,10 +78,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `measure_cost`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `measure_cost`."""
     extras = {key: point.settings[key] for key in EXTRAS if point.settings.get(key)}
     if "record_events" in extras and not point.engine.records_events:
         raise point.make_error("record_events", "has a meaning with job: measure_cost and engine: event only")
@@ -100,9 +97,8 @@ def arguments(point: Point) -> dict:
 
 
 def _rival(point: Point) -> dict | None:
-    """Return the rival's scene and engines, which are timed alternately with a point's, or None.
-
-    The rival has the point's settings except for the settings in `without`.
+    """Return the rival's scene and engines, which are timed alternately with a point's, or None. The rival
+    has the point's settings except for the settings in `without`.
     """
     if "without" not in point.settings:
         return None
@@ -155,10 +151,8 @@ def measure_cost(
     ``bits``, a digest of the final state and of the sums over collisions. Attributes are count, dimension,
     radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or time_step,
     extras, and cores, the number that kernels may use on this machine. If a run needs more cores than this,
-    all engines run once, for their counts and bits, and all times are NaN.
-
-    Raises SceneError. Raises SimulationError if the counts or the bits of a repeat or a copy differ from the
-    first run.
+    all engines run once, for their counts and bits, and all times are NaN. Raises SceneError. Raises
+    SimulationError if the counts or the bits of a repeat or a copy differ from the first run.
     """
     from numba import config
 
@@ -194,9 +188,8 @@ def measure_cost(
 
 
 def _in_turn(runs: Sequence[_Run], interval: float, repeats: int) -> tuple[np.ndarray, list[dict]]:
-    """Measure CPU and wall-clock time (2, runs, repeats), and the counts of each run.
-
-    Runs alternate. Raises SimulationError if the counts differ between repeats.
+    """Measure CPU and wall-clock time (2, runs, repeats), and the counts of each run. Runs alternate. Raises
+    SimulationError if the counts differ between repeats.
     """
     import numpy as np
 
@@ -229,9 +222,8 @@ def _attributes(scene: Scene, engine: Engine) -> dict:
 
 
 def _start(scene: Scene, engine: Engine, seed: tuple[int, ...], equilibration: float) -> State:
-    """Return the state from which all timings start.
-
-    No partition or search method changes any bit of this state.
+    """Return the state from which all timings start. No partition or search method changes any bit of this
+    state.
     """
     from gaspart.simulation import Simulation
     from gaspart.state.initial import initial_state
@@ -275,9 +267,8 @@ def _time(run: _Run, interval: float) -> tuple[tuple[float, float], dict]:
 
 
 def _count(dynamics: Dynamics) -> dict:
-    """Return the counts of a tally, and a digest of the particles and of the sums.
-
-    The sums are over collisions.
+    """Return the counts of a tally, and a digest of the particles and of the sums. The sums are over
+    collisions.
     """
     import numpy as np
 

@@ -34,10 +34,7 @@ def engines(point: Point) -> list[Engine]:
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `pack`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `pack`."""
     if ("attempts" in point.settings) == (point.settings.get("arrangement") == "compressed"):
         raise point.make_error("attempts", "is required with job: pack, unless the arrangement is compressed")
     if "growth_rate" in point.settings and "attempts" in point.settings:
@@ -49,14 +46,11 @@ def arguments(point: Point) -> dict:
 def pack(
     scene: Scene, attempts: int | None, seeds: list[tuple[int, ...]], growth: float = GROWTH
 ) -> PointData:
-    """Pack a scene of one species, once per seed, by insertion or growth.
-
-    Insertion tries up to `attempts` random positions for each particle. If `attempts` has the value None, the
-    particles grow at the rate `growth` until they jam instead.
-
-    Returns a dataset with position (replica, particle, axis), NaN for a particle that was never placed;
-    radius and packing_fraction (replica,); reduced pressure (replica,), NaN for insertion; and length
-    (axis,).
+    """Pack a scene of one species, once per seed, by insertion or growth. Insertion tries up to `attempts`
+    random positions for each particle. If `attempts` has the value None, the particles grow at the rate
+    `growth` until they jam instead. Returns a dataset with position (replica, particle, axis), NaN for a
+    particle that was never placed; radius and packing_fraction (replica,); reduced pressure (replica,), NaN
+    for insertion; and length (axis,).
     """
     import numpy as np
 

@@ -28,15 +28,12 @@ def write_replicas(
     overwrite: bool = True,
     kept: Path | None = None,
 ) -> None:
-    """Write the trajectory of each recipe, and call report(line) for each.
-
-    Snakemake deletes `folder` before a rerun. Therefore trajectories are written to a folder next to it until
-    all are complete, and an interrupted run resumes there. If `overwrite` is True, they replace files of an
-    unfinished run with another recipe. Raises SceneError if that folder has other files: only files that
-    gaspart wrote are removed.
-
-    Links to the trajectories, and their final states, are in the folder `kept`, if it is given. From there a
-    longer run is continued, after Snakemake has deleted the shorter one.
+    """Write the trajectory of each recipe, and call report(line) for each. Snakemake deletes `folder` before
+    a rerun. Therefore trajectories are written to a folder next to it until all are complete, and an
+    interrupted run resumes there. If `overwrite` is True, they replace files of an unfinished run with
+    another recipe. Raises SceneError if that folder has other files: only files that gaspart wrote are
+    removed. Links to the trajectories, and their final states, are in the folder `kept`, if it is given. From
+    there a longer run is continued, after Snakemake has deleted the shorter one.
     """
     partial = Path(f"{folder}.partial")
     _make(partial)
@@ -69,10 +66,7 @@ def _link(source: Path, target: Path) -> None:
 
 
 def _make(folder: Path) -> None:
-    """Make a folder if it is missing.
-
-    Raises SceneError for a link or a file.
-    """
+    """Make a folder if it is missing. Raises SceneError for a link or a file."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if folder.is_symlink():
@@ -82,9 +76,8 @@ def _make(folder: Path) -> None:
 
 
 def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
-    """Return the files that runs of other recipes left in a folder.
-
-    Raises SceneError for a file that gaspart did not write, and for a folder or link.
+    """Return the files that runs of other recipes left in a folder. Raises SceneError for a file that gaspart
+    did not write, and for a folder or link.
     """
     from gaspart.trajectory.checkpoint import CHECKPOINT
     from gaspart.trajectory.opening import TRAJECTORY, UNFINISHED

@@ -68,18 +68,12 @@ def engines(point: Point) -> list[Engine]:
 
 
 def modules(point: Point) -> list[str]:
-    """Return the modules that this module imports by name.
-
-    Only runs with `until` depend on the analysis.
-    """
+    """Return the modules that this module imports by name. Only runs with `until` depend on the analysis."""
     return [EXAMINER] if "until" in point.settings else []
 
 
 def arguments(point: Point) -> dict:
-    """Return the arguments of `simulate`.
-
-    Raises SceneError.
-    """
+    """Return the arguments of `simulate`."""
     times, settings = point.schedule, point.settings
     common = {"scene": point.scene, "engine": point.engine, "seeds": point.seeds}
     options = {key: settings[key] for key in OPTIONS if settings.get(key)}
@@ -110,10 +104,7 @@ def arguments(point: Point) -> dict:
 
 
 def _frame_interval(point: Point) -> float:
-    """Compute the time between two stored frames.
-
-    Raises SceneError.
-    """
+    """Compute the time between two stored frames."""
     times, settings = point.schedule, point.settings
     if "frames" in settings:
         if "lags" not in settings:
@@ -124,18 +115,14 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`.
-
-    The other arguments are passed to `recipes`.
-    """
+    """Write a trajectory for each seed; see `write_replicas`. The other arguments are passed to `recipes`."""
     kept = folder.parents[1] / ".kept" / folder.parent.name / folder.name
     write_replicas(record, recipes(**arguments), folder, print, kept=kept)
 
 
 def record(recipe: Recipe, path: Path, overwrite: bool, progress: Progress | None = None) -> None:
-    """Make, continue, or verify a trajectory.
-
-    A complete trajectory is left unchanged. The final state is stored, from which a longer run continues.
+    """Make, continue, or verify a trajectory. A complete trajectory is left unchanged. The final state is
+    stored, from which a longer run continues.
     """
     from gaspart.trajectory import run as trajectory
 
@@ -147,9 +134,8 @@ def record(recipe: Recipe, path: Path, overwrite: bool, progress: Progress | Non
 
 
 def recipes(seeds: Sequence[tuple[int, ...]], **settings: Any) -> list[Recipe]:
-    """Return the recipe of each replica.
-
-    The settings are arguments of `recipe_fields`. Raises SceneError for settings that cannot be run.
+    """Return the recipe of each replica. The settings are arguments of `recipe_fields`. Raises SceneError for
+    settings that cannot be run.
     """
     from gaspart.trajectory.recipe import Recipe
 

@@ -22,19 +22,14 @@ if TYPE_CHECKING:
 
 
 def engine(point: Point) -> Engine:
-    """Return the engine with the settings of a point.
-
-    Raises SceneError.
-    """
+    """Return the engine with the settings of a point."""
     return _made(point, point.settings)
 
 
 def scan_engines(point: Point) -> list[Engine]:
-    """Return the engine of a point, or an engine for each value of its scan.
-
-    Scans are over time steps or partitions. If several values of the scan give the same partition, only one
-    engine has it. A fractional step is a fraction of the engine's default step for the scene. Raises
-    SceneError.
+    """Return the engine of a point, or an engine for each value of its scan. Scans are over time steps or
+    partitions. If several values of the scan give the same partition, only one engine has it. A fractional
+    step is a fraction of the engine's default step for the scene.
     """
     settings = point.settings
     scans = [key for key in SCANS if key in settings]
@@ -64,9 +59,8 @@ def scan_engines(point: Point) -> list[Engine]:
 def boxes_per_side(
     per_particle: float, count: int, radius: float, lengths: tuple[float, ...]
 ) -> tuple[int, ...]:
-    """Return the number of boxes along each axis (d,), with ``per_particle`` boxes per particle.
-
-    Boxes are nearly cubic, and not smaller than a diameter.
+    """Return the number of boxes along each axis (d,), with ``per_particle`` boxes per particle. Boxes are
+    nearly cubic, and not smaller than a diameter.
     """
     edge = (math.prod(lengths) / (per_particle * count)) ** (1.0 / len(lengths))
     return tuple(max(1, min(round(length / edge), int(length / (2.0 * radius)))) for length in lengths)
@@ -107,10 +101,9 @@ def _check(point: Point, name: str, settings: dict) -> None:
 
 
 def chosen(settings: dict, scene: Scene, where: str) -> dict:
-    """Return the settings of a point with `engine: auto`, with the selected engine.
-
-    The choice is made for the machine of the table, so that a config has the same meaning everywhere. A
-    length is set only if the point has no length. Raises SceneError.
+    """Return the settings of a point with `engine: auto`, with the selected engine. The choice is made for
+    the machine of the table, so that a config has the same meaning everywhere. A length is set only if the
+    point has no length.
     """
     from gaspart.accuracy.advisers import adviser_of
     from gaspart.accuracy.plan import plan_from_table
@@ -144,10 +137,8 @@ _SIZES = 64  # sizes of a polydisperse gas for the estimate of its collision rat
 
 @dataclass(frozen=True)
 class Schedule:
-    """Schedule of the samples of a run, in the scene's time.
-
-    The first ``equilibration_frames`` frames are discarded. `samples_per_frame` is set if the run correlates
-    more samples than it stores frames.
+    """Schedule of the samples of a run, in the scene's time. The first ``equilibration_frames`` frames are
+    discarded. `samples_per_frame` is set if the run correlates more samples than it stores frames.
     """
 
     duration: float
@@ -163,11 +154,10 @@ class Schedule:
 
 
 def schedule(point: Point) -> Schedule:
-    """Return duration and sampling of a point's runs, in the scene's time.
-
-    The length is divided into ``samples`` intervals. With the step engine, an interval has a whole number of
-    time steps. The equilibration, rounded up to complete intervals, precedes it. If ``frames`` is set, the
-    intervals are the intervals between frames.
+    """Return duration and sampling of a point's runs, in the scene's time. The length is divided into
+    ``samples`` intervals. With the step engine, an interval has a whole number of time steps. The
+    equilibration, rounded up to complete intervals, precedes it. If ``frames`` is set, the intervals are the
+    intervals between frames.
     """
     settings = point.settings
     lengths = [key for key in LENGTHS if key in settings]
@@ -196,9 +186,8 @@ def schedule(point: Point) -> Schedule:
 
 
 def _unit_of_time(point: Point, unit: str) -> float:
-    """Return the scene's time for a ``unit`` of length.
-
-    For collisions per particle it is computed from Enskog's rate.
+    """Return the scene's time for a ``unit`` of length. For collisions per particle it is computed from
+    Enskog's rate.
     """
     if unit == "duration":
         return 1.0
@@ -225,10 +214,7 @@ def _unit_of_time(point: Point, unit: str) -> float:
 
 
 def _mean_rate(mixture: Mixture) -> float:
-    """Compute the mean collision rate of the particles.
-
-    If there are many sizes, a sample of them is used.
-    """
+    """Compute the mean collision rate of the particles. If there are many sizes, a sample of them is used."""
     from gaspart import theory
 
     few = mixture.thin(_SIZES)

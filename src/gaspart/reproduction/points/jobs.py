@@ -34,9 +34,8 @@ JOBS: Mapping[str, Job] = {
 
 
 def validate(point: Point) -> None:
-    """Make the arguments of a point's job, to validate them.
-
-    Keys of other jobs are not allowed. Raises SceneError.
+    """Make the arguments of a point's job, to validate them. Keys of other jobs are not allowed. Raises
+    SceneError.
     """
     others = {key for job in JOBS.values() for key in job.KEYS} - JOBS[point.job].KEYS.keys()
     for key in others & point.settings.keys():

@@ -27,10 +27,9 @@ _PLAIN = re.compile(r"^[ \t]*import (gaspart[\w.]*)", re.MULTILINE)
 
 @cache
 def closure(*roots: str | Path) -> frozenset[Path]:
-    """Return the files of the package that modules or scripts need, directly or indirectly.
-
-    Modules are given by dotted names, and scripts by paths. Tables in a folder `data` next to a module that
-    names it are included.
+    """Return the files of the package that modules or scripts need, directly or indirectly. Modules are given
+    by dotted names, and scripts by paths. Tables in a folder `data` next to a module that names it are
+    included.
     """
     files: set[Path] = set()
     queue = [root if isinstance(root, Path) else _file(root) for root in roots]
@@ -92,7 +91,6 @@ def _file(module: str) -> Path | None:
 @cache
 def digest(*roots: str | Path) -> str:
     """Return a short digest of the files of a closure; a user's module has a path that ends in .py.
-
     Docstrings and comments do not change the digest.
     """
     own = {str(root): Path(root) for root in roots if isinstance(root, str) and root.endswith(".py")}
@@ -102,10 +100,9 @@ def digest(*roots: str | Path) -> str:
 
 @cache
 def measuring_digest(module: str, figure: str) -> str:
-    """Return a short digest of the code with which the module of a figure measures.
-
-    This code is what its function `measure` needs: definitions in the module, and files that these import.
-    Claims and drawing are no part of it.
+    """Return a short digest of the code with which the module of a figure measures. This code is what its
+    function `measure` needs: definitions in the module, and files that these import. Claims and drawing are
+    no part of it.
     """
     path = Path(module) if module.endswith(".py") else _file(module)
     assert path is not None, module
@@ -153,18 +150,16 @@ def _measure_of(statements: list[ast.stmt], figure: str) -> ast.AST:
 
 @cache
 def kernel_digest(*roots: str | Path) -> str:
-    """Return a short digest of the modules in a closure that `warm` may compile.
-
-    Jobs that need equal modules share their stamps.
+    """Return a short digest of the modules in a closure that `warm` may compile. Jobs that need equal modules
+    share their stamps.
     """
     modules = closure(*roots) & closure("gaspart.reproduction.points.point")
     return _digest_of([path for path in _in_order(modules) if path.is_relative_to(PACKAGE / "kernels")])
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:
-    """Sort paths by their text.
-
-    A comparison of path objects compares their parts. For a hundred closures this takes 0.1 s.
+    """Sort paths by their text. A comparison of path objects compares their parts. For a hundred closures
+    this takes 0.1 s.
     """
     return sorted(paths, key=str)
 

@@ -36,10 +36,7 @@ _LONGEST_NAME = 200  # of the 255 bytes of a file name; the rest is for suffixes
 
 
 class Job(Protocol):
-    """Declarations of a job for planning.
-
-    The function that does the work is separate.
-    """
+    """Declarations of a job for planning. The function that does the work is separate."""
 
     RESULT: str
     """Description of the result of the job."""
@@ -50,17 +47,13 @@ class Job(Protocol):
         """Return the engines whose kernels the job compiles; none if particles are only placed."""
 
     def arguments(self, point: Point) -> dict:
-        """Return the arguments of the point's function.
-
-        Raises SceneError.
-        """
+        """Return the arguments of the point's function."""
 
 
 @dataclass(frozen=True)
 class Point:
-    """Point of a grid: a job of the workflow, with one output at ``path``.
-
-    Properties that are computed from the settings raise SceneError if the settings contradict each other.
+    """Point of a grid: a job of the workflow, with one output at ``path``. Properties that are computed from
+    the settings raise SceneError if the settings contradict each other.
     """
 
     experiment: str
@@ -91,9 +84,8 @@ class Point:
         return [self.replica_path(k) for k in range(self.replicas)]
 
     def seed(self, replica: int = 0) -> tuple[int, ...]:
-        """Return four 32-bit words that depend only on names.
-
-        The seeds do not depend on the position of the point in its grid.
+        """Return four 32-bit words that depend only on names. The seeds do not depend on the position of the
+        point in its grid.
         """
         text = f"{self.config_seed}/{self.experiment}/{self.name}/{replica}"
         digest = hashlib.sha256(text.encode()).digest()
@@ -131,9 +123,8 @@ class Point:
 
     @cached_property
     def kind_of_job(self) -> Job:
-        """Module of the job.
-
-        The module is imported by name, so that measurements, which use points too, do not depend on any job.
+        """Module of the job. The module is imported by name, so that measurements, which use points too, do
+        not depend on any job.
         """
         return import_module(f"{_JOBS}.{self.job}")
 
@@ -173,10 +164,9 @@ class Point:
 
 
 def name_of(varying: dict, where: str) -> str:
-    """Return the name of a point for a file system: its varying keys and their values.
-
-    Raises SceneError for a value that a file name cannot contain, and for a name that is too long. The error
-    names the key below ``where``.
+    """Return the name of a point for a file system: its varying keys and their values. Raises SceneError for
+    a value that a file name cannot contain, and for a name that is too long. The error names the key below
+    ``where``.
     """
     parts = [f"{_text(key, where)}={_text(value, f'{where}.{key}')}" for key, value in varying.items()]
     name = ",".join(parts) or "single"
@@ -203,10 +193,9 @@ _NUMBERS = {"centres_to_walls", "polydispersity"}  # keys that change no kernel
 
 
 def variant(point: Point) -> str:
-    """Return a text that identifies the compiled kernels of a point.
-
-    The text has engine, search or precision, dimension, and a digest of the features of its scene. Kernels
-    are compiled for features, not for numbers. Raises SceneError.
+    """Return a text that identifies the compiled kernels of a point. The text has engine, search or
+    precision, dimension, and a digest of the features of its scene. Kernels are compiled for features, not
+    for numbers.
     """
     scene = point.scene
     parts = ["fill", "random", f"{scene.dimension}d"]
@@ -224,9 +213,8 @@ def variant(point: Point) -> str:
 
 
 def compiled_features(scene: Scene) -> set[str]:
-    """Return the names of features that change the kernels of a scene.
-
-    These names include features that every engine models but compiles only if a scene has them.
+    """Return the names of features that change the kernels of a scene. These names include features that
+    every engine models but compiles only if a scene has them.
     """
     names = scene.features - _NUMBERS - {"contact_duration"}
     if names & _LAW:
@@ -251,10 +239,9 @@ def _has_oversized(scene: Scene) -> bool:
 
 
 def compile_task(point: Point) -> str:
-    """Return the task of `compile_kernels` for a point, as JSON.
-
-    The task consists of the engine, the scene, and two flags: one for the tally of stress, one for the record
-    of events. The scene is reduced to a few particles if these have all of its features.
+    """Return the task of `compile_kernels` for a point, as JSON. The task consists of the engine, the scene,
+    and two flags: one for the tally of stress, one for the record of events. The scene is reduced to a few
+    particles if these have all of its features.
     """
     from gaspart.scene.scene import Scene
 

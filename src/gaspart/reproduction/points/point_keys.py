@@ -105,10 +105,7 @@ _BOXES_PER_PARTICLE = positive(
 
 
 def _settings(engine: Any) -> dict[str, Kind]:
-    """Return the keys of an engine, from its fields.
-
-    Points with another engine do not require them.
-    """
+    """Return the keys of an engine, from its fields. Points with another engine do not require them."""
     declared = schema_of(engine)
     kinds = {name: Kind({"default": None, **kind}) for name, kind in declared["properties"].items()}
     for name in declared.get("required", ()):
@@ -149,13 +146,11 @@ SCANS = ("scan_boxes_per_side", "scan_boxes_per_particle", "scan_time_steps", "s
 
 
 def ending(point: Point) -> dict[str, Any]:
-    """Return the fields of `Recipe` that follow from `until`.
-
-    Raises SceneError for accuracies that no run can reach.
+    """Return the fields of `Recipe` that follow from `until`. Raises SceneError for accuracies that no run
+    can reach.
     """
     from gaspart.runs.ending import Accuracy, contents_until, default_sample_interval
-    from gaspart.trajectory.run_options import contents_of
-    from gaspart.trajectory.until import Until
+    from gaspart.trajectory.run_options import Until, contents_of
 
     settings, times = point.settings, point.schedule
     start = times.equilibration if "equilibration" in settings else None

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from gaspart.errors import SceneError, short_repr
 from gaspart.keys.values import MOST_PARTICLES
 from gaspart.reproduction.points.point_keys import EXTENTS, GAS, PREFIX
-from gaspart.scene.limits import ball_volume
-from gaspart.scene.sizes import DISTRIBUTIONS
+from gaspart.scene.sizes import DISTRIBUTIONS, ball_volume
 from gaspart.yaml_text import read_yaml
 
 if TYPE_CHECKING:
@@ -26,9 +25,8 @@ if TYPE_CHECKING:
 
 
 class Extents(NamedTuple):
-    """Number of particles, largest radius, and side lengths (d,).
-
-    For a polydisperse species the radius is the mean radius.
+    """Number of particles, largest radius, and side lengths (d,). For a polydisperse species the radius is
+    the mean radius.
     """
 
     particles: int
@@ -37,19 +35,14 @@ class Extents(NamedTuple):
 
 
 def scene(point: Point) -> Scene:
-    """Return the ``Scene`` of a point.
-
-    Raises SceneError.
-    """
+    """Return the ``Scene`` of a point."""
     return _read(point) if "scene" in point.settings else _made(point)
 
 
 def extents(point: Point) -> Extents:
-    """Return the extents of a point.
-
-    Three of count, radius, packing fraction and side are given, and the fourth is computed. A computed count
-    is rounded to an integer. A computed side is equal on all axes. With a scene file, all extents are known
-    from the file. Raises SceneError.
+    """Return the extents of a point. Three of count, radius, packing fraction and side are given, and the
+    fourth is computed. A computed count is rounded to an integer. A computed side is equal on all axes. With
+    a scene file, all extents are known from the file.
     """
     settings = point.settings
     if "scene" in settings:
@@ -156,10 +149,7 @@ def _made(point: Point) -> Scene:
 
 
 def _read(point: Point) -> Scene:
-    """Read the scene of the scene file, or of its content.
-
-    Settings replace values of the scene.
-    """
+    """Read the scene of the scene file, or of its content. Settings replace values of the scene."""
     from gaspart.scene.scene import Scene
 
     settings = point.settings
@@ -191,10 +181,7 @@ def _of_file(point: Point, path: str) -> tuple[Any, Scene]:
 
 @cache
 def _file(path: str, changed: int) -> tuple[Any, Scene]:
-    """Return the content of a scene file, and its scene.
-
-    A changed file is read again.
-    """
+    """Return the content of a scene file, and its scene. A changed file is read again."""
     from gaspart.scene.scene import Scene
 
     content = read_yaml(path)
@@ -202,9 +189,8 @@ def _file(path: str, changed: int) -> tuple[Any, Scene]:
 
 
 def _replace(content: dict, key: str, point: Point) -> None:
-    """Replace the value at a dotted key; add the key if it is missing.
-
-    The key is `scene.`, followed by names in mappings and indices in lists.
+    """Replace the value at a dotted key; add the key if it is missing. The key is `scene.`, followed by names
+    in mappings and indices in lists.
     """
     _, *parents, last = key.split(".")
     block = content
@@ -217,10 +203,7 @@ def _replace(content: dict, key: str, point: Point) -> None:
 
 
 def _place(block: object, part: str, key: str, point: Point) -> str | int:
-    """Return the key or index that `part` of a dotted key denotes.
-
-    The `block` is a mapping or a list.
-    """
+    """Return the key or index that `part` of a dotted key denotes. The `block` is a mapping or a list."""
     if isinstance(block, dict):
         block.setdefault(part, None)
         return part

@@ -46,11 +46,10 @@ _OF_SEEDS = ("echo", "fill", "pack")
 def scale_length(
     job: str, settings: Mapping[str, Any], multiple: float, least: int = _LEAST_SAMPLES
 ) -> dict[str, Any]:
-    """Return the settings with `multiple` times as many replicas, and then longer runs.
-
-    The intervals between samples are kept, so that a run of less effort is the beginning of one of more. It
-    has at least `least` samples, and twice as many as lags, unless there are fewer at effort 1. If a run does
-    not begin with an equilibration, its length is not changed, because it describes a process in time.
+    """Return the settings with `multiple` times as many replicas, and then longer runs. The intervals between
+    samples are kept, so that a run of less effort is the beginning of one of more. It has at least `least`
+    samples, and twice as many as lags, unless there are fewer at effort 1. If a run does not begin with an
+    equilibration, its length is not changed, because it describes a process in time.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)
@@ -103,9 +102,8 @@ _TAKEN = (
 
 
 def _of_any_engine() -> dict[str, Kind]:
-    """Return the keys of all engines.
-
-    If a key has different meanings for engines, the description lists them.
+    """Return the keys of all engines. If a key has different meanings for engines, the description lists
+    them.
     """
     merged: dict[str, Kind] = {}
     for engine, keys in ENGINE_KEYS.items():
@@ -183,9 +181,8 @@ ANIMATION: dict[str, Kind] = {
 
 
 def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
-    """Return the top level of a config from the entries of its figures by name.
-
-    Figures with other names have the entry `own`.
+    """Return the top level of a config from the entries of its figures by name. Figures with other names have
+    the entry `own`.
     """
     named = {"type": "object", "propertyNames": _NAME}
     return {
@@ -235,7 +232,9 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
             default={},
         ),
         "opening": describe(
-            {**TEXT, **_NAME}, "the film that opens the report; by default the first", default=""
+            {**TEXT, **_NAME},
+            "the scene of `gaspart new`, of two dimensions, that runs on the first screen of the report",
+            default="",
         ),
     }
 
@@ -245,9 +244,8 @@ MOST_POINTS = 100_000
 
 
 def points(config: dict, experiment: str) -> list[Point]:
-    """Return all points of an experiment.
-
-    Raises SceneError for an empty grid, or for two points of equal name.
+    """Return all points of an experiment. Raises SceneError for an empty grid, or for two points of equal
+    name.
     """
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
@@ -283,10 +281,7 @@ def _plain(key: str, value: Any) -> Any:
 
 
 def _chosen(point: Point) -> Point:
-    """Return a point with the engine that `engine: auto` selects.
-
-    Raises SceneError.
-    """
+    """Return a point with the engine that `engine: auto` selects."""
     where = f"experiments.{point.experiment}"
     if point.settings.get("engine") == "auto":
         from gaspart.reproduction.points.engine import chosen
@@ -299,10 +294,7 @@ def _chosen(point: Point) -> Point:
 
 
 def all_points(config: dict) -> dict[str, dict[str, Point]]:
-    """Return the points of all experiments, by experiment and name.
-
-    Raises SceneError as in `points`.
-    """
+    """Return the points of all experiments, by experiment and name. Raises SceneError as in `points`."""
     return {
         experiment: {point.name: point for point in points(config, experiment)}
         for experiment in config["experiments"]
@@ -310,9 +302,8 @@ def all_points(config: dict) -> dict[str, dict[str, Point]]:
 
 
 def figure_points(config: dict, figure: str, planned: Mapping[str, Mapping[str, Point]]) -> list[Point]:
-    """Return the points of all experiments that a figure lists, in the figure's order.
-
-    `planned` is a result of `all_points`. Raises SceneError for an unknown experiment.
+    """Return the points of all experiments that a figure lists, in the figure's order. `planned` is a result
+    of `all_points`. Raises SceneError for an unknown experiment.
     """
     chosen: list[Point] = []
     for experiment in config["figures"][figure]["experiments"]:
@@ -338,9 +329,8 @@ def _check_size(config: dict, experiment: str) -> None:
 
 
 def _combinations(grid: Any, where: str) -> list[dict]:
-    """Return all combinations of the values in a mapping of lists.
-
-    For several mappings, their combinations are concatenated.
+    """Return all combinations of the values in a mapping of lists. For several mappings, their combinations
+    are concatenated.
     """
     if isinstance(grid, list):
         if not grid:

@@ -6,10 +6,9 @@ observable, packing fraction and accuracy.
 
 from __future__ import annotations
 
-import html
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,9 +36,8 @@ def states(paths: Mapping[str, str]) -> list[dict[str, Any]]:
 
 
 def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
-    """Return the `engines` of the figure on the cost of an accuracy, with the figure's name.
-
-    None if the figure is not on the page.
+    """Return the `engines` of the figure on the cost of an accuracy, with the figure's name. None if the
+    figure is not on the page.
     """
     import xarray as xr
 
@@ -50,11 +48,9 @@ def choice_of_engine(paths: Mapping[str, str]) -> dict[str, Any] | None:
 def series(
     datasets: Mapping[str, xr.Dataset], states: Mapping[str, tuple[int, float]]
 ) -> list[dict[str, Any]]:
-    """Return the data of each figure of an equation of state.
-
-    The data are the available packing fractions, the partial sums of the virial series by order, Z of the
-    best equation of state, and the measured Z with its standard error. `states` has the dimension of each
-    figure, and the largest available packing fraction.
+    """Return the data of each figure of an equation of state. The data are the available packing fractions,
+    the partial sums of the virial series by order, Z of the best equation of state, and the measured Z with
+    its standard error. `states` has the dimension of each figure, and the largest available packing fraction.
     """
     rows = []
     for figure, (dimension, largest) in states.items():
@@ -77,13 +73,12 @@ def series(
 
 
 def engines(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the costs and errors of all engines, from the data set of `time_to_accuracy`.
-
-    `count` is the number of particles. `engines` has name and colour of each engine. `parts` are the causes
-    of errors. `observables` has for each observable its name, its packing fractions and two arrays. The array
-    `cost`, in s, is over packing fraction, accuracy and engine. An element equals None if the engine was not
-    run, and -1 if no setting is accurate enough. The array `error` has `parts` as further axis. It is
-    relative, and None if unknown. `accuracies` has the values of the second axis.
+    """Return the costs and errors of all engines, from the data set of `time_to_accuracy`. `count` is the
+    number of particles. `engines` has name and colour of each engine. `parts` are the causes of errors.
+    `observables` has for each observable its name, its packing fractions and two arrays. The array `cost`, in
+    s, is over packing fraction, accuracy and engine. An element equals None if the engine was not run, and -1
+    if no setting is accurate enough. The array `error` has `parts` as further axis. It is relative, and None
+    if unknown. `accuracies` has the values of the second axis.
     """
     from matplotlib.colors import to_hex
 
@@ -157,10 +152,7 @@ class Reference:
 
     @property
     def is_source(self) -> bool:
-        """True if the key is a name, such as "source A".
-
-        Other keys consist of an author and a year.
-        """
+        """True if the key is a name, such as "source A". Other keys consist of an author and a year."""
         return str(self.year) not in self.key
 
     @property
@@ -178,9 +170,8 @@ class Reference:
 
 
 def read_references(path: str | Path) -> dict[str, Reference]:
-    """Read the references of a file by key, numbered in the order of the file.
-
-    Raises SceneError for invalid YAML.
+    """Read the references of a file by key, numbered in the order of the file. Raises SceneError for invalid
+    YAML.
     """
     return {
         key: Reference(**{**entry, "number": number, "key": key, "authors": tuple(entry["authors"])})
@@ -189,18 +180,14 @@ def read_references(path: str | Path) -> dict[str, Reference]:
 
 
 def find_reference(citation: re.Match[str], references: Mapping[str, Reference]) -> Reference | None:
-    """Return the reference that a match of `CITATION` cites.
-
-    None for other texts in square brackets.
-    """
+    """Return the reference that a match of `CITATION` cites. None for other texts in square brackets."""
     key = " ".join(citation[1].split())
     return references.get(key) or references.get(key[0].lower() + key[1:])
 
 
 def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) -> dict[str, Reference]:
-    """Return the references that some texts cite, by key.
-
-    The references are in the order of `references`, and are numbered from 1.
+    """Return the references that some texts cite, by key. The references are in the order of `references`,
+    and are numbered from 1.
     """
     matches = (find_reference(citation, references) for text in texts for citation in CITATION.finditer(text))
     keys = {reference.key for reference in matches if reference is not None}
@@ -208,16 +195,15 @@ def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) 
     return {item.key: replace(item, number=number) for number, item in enumerate(kept, 1)}
 
 
-def link_citations(text: str, references: Mapping[str, Reference]) -> str:
-    """Return HTML with citations replaced by names and a numbered link to the list."""
+def split_citations(text: str, references: Mapping[str, Reference]) -> Iterator[tuple[str, Reference | None]]:
+    """Yield the parts of a text, with the reference that is cited at the end of a part.
 
-    def link(citation: re.Match[str]) -> str:
-        reference = find_reference(citation, references)
-        if reference is None:
-            return citation[0]
-        name = citation[1] if reference.is_source else html.escape(reference.short)
-        title = html.escape(reference.text)
-        anchor = f'<a href="#reference-{reference.number}" title="{title}">[{reference.number}]</a>'
-        return f"{name}\N{NO-BREAK SPACE}{anchor}"
-
-    return CITATION.sub(link, text)
+    The names of authors take the place of the key in brackets.
+    """
+    start = 0
+    for citation in CITATION.finditer(text):
+        if (reference := find_reference(citation, references)) is not None:
+            yield text[start : citation.start()], None
+            yield text[slice(*citation.span(1))] if reference.is_source else reference.short, reference
+            start = citation.end()
+    yield text[start:], None

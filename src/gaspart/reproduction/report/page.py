@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.reproduction.claims import counts
+from gaspart.reproduction.claims.judging import FAMILY_LEVEL
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.registry import chapter
 
@@ -47,10 +48,9 @@ class Dot:
 
 
 def deviation(row: dict[str, Any]) -> float:
-    """Return the position of a claim in standard deviations.
-
-    The position of a value is its deviation. For a measured number between two bounds, the bounds are at -3
-    and 3, and the number is at its relative position between them. Without a deviation the position is 0.
+    """Return the position of a claim in standard deviations. The position of a value is its deviation. For a
+    measured number between two bounds, the bounds are at -3 and 3, and the number is at its relative position
+    between them. Without a deviation the position is 0.
     """
     low, high, measured = row["lowest"], row["highest"], row["measured"]
     if math.isfinite(low) and math.isfinite(high) and math.isfinite(measured) and high > low:
@@ -108,9 +108,8 @@ class Caption:
 
 
 def split_caption(text: str) -> Caption:
-    """Return the parts of a caption.
-
-    Raises ValueError if the caption does not begin with words in bold, or if `html_of` raises it.
+    """Return the parts of a caption. Raises ValueError if the caption does not begin with words in bold, or
+    if `html_of` raises it.
     """
     paragraphs = re.split(r"\n\s*\n", text.strip())
     finding = _FINDING.match(paragraphs[0])
@@ -131,10 +130,9 @@ def split_caption(text: str) -> Caption:
 
 
 def html_of(text: str) -> str:
-    """Convert reStructuredText to a fragment of HTML.
-
-    Raises ValueError for unclosed marks and other faults. Raises ValueError also for an address whose scheme
-    is not for web or mail: `javascript:` would run on the reader's machine.
+    """Convert reStructuredText to a fragment of HTML. Raises ValueError for unclosed marks and other faults.
+    Raises ValueError also for an address whose scheme is not for web or mail: `javascript:` would run on the
+    reader's machine.
     """
     from docutils.core import publish_doctree, publish_parts
 
@@ -166,9 +164,8 @@ def _fault(tree: nodes.document) -> str:
 
 
 def _is_safe(address: str) -> bool:
-    """Return True if an address is relative, or for web or mail.
-
-    Browsers ignore white space and control characters in a scheme.
+    """Return True if an address is relative, or for web or mail. Browsers ignore white space and control
+    characters in a scheme.
     """
     scheme = _SCHEME.match("".join(c for c in address if c.isprintable() and c != " ").lower())
     return scheme is None or scheme[1] in _SCHEMES
@@ -187,6 +184,8 @@ CHAPTERS = (
     "Own figures",
 )
 """Chapters in the order of the page."""
+_FEW = 6
+"""Number of findings of a page without chosen ones."""
 _KEY, _SHARPNESS = 360, 1.6
 """Width of a key picture in pixels, and resolution of pictures inside the page, in pixels per pixel of the
 page."""
@@ -235,29 +234,24 @@ def by_chapter(sections: Iterable[Section]) -> dict[str, list[Section]]:
     return {title: members for title, members in of_chapter.items() if members}
 
 
-def findings(chosen: Iterable[Mapping[str, str]], rows: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """Return the key findings of the figures that have claims, [{figure, text}].
-
-    `chosen` are the findings with placeholders for numbers, as in a caption. The measured numbers are filled
-    in.
+def findings(chosen: Iterable[Mapping[str, str]], sections: Iterable[Section]) -> list[dict[str, str]]:
+    """Return the key findings of the page, [{figure, text}], with measured numbers filled in. `chosen` are
+    findings with placeholders for numbers, as in a caption. If their figures are not on the page, the
+    findings of its first figures take their place.
     """
-    present = {row["figure"] for row in rows}
-    return [
-        {
-            "figure": finding["figure"],
-            "text": html_of(
-                fill_caption(finding["text"], [row for row in rows if row["figure"] == finding["figure"]])
-            ),
-        }
-        for finding in chosen
-        if finding["figure"] in present
+    present = {section.name: section for section in sections}
+    shown = [
+        {"figure": one["figure"], "text": _inline(fill_caption(one["text"], present[one["figure"]].claims))}
+        for one in chosen
+        if one["figure"] in present
     ]
+    first = list(present.values())[:_FEW]
+    return shown or [{"figure": one.name, "text": f"{one.caption.finding}."} for one in first]
 
 
 def statements(documents: Iterable[Mapping[str, Any]], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the statements of the sources, with the measured numbers of their figures filled in.
-
-    Each has the source, the place `at`, the verdict, the figure or "", and `says` and `why` as HTML.
+    """Return the statements of the sources, with the measured numbers of their figures filled in. Each has
+    the source, the place `at`, the verdict, the figure or "", and `says` and `why` as HTML.
     """
     shown = []
     for document in documents:
@@ -273,18 +267,26 @@ def _inline(text: str) -> str:
 
 
 def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the result of all claims: numbers by verdict, by kind and verdict, and disagreements.
-
-    Families are counted too, so that the numbers of all kinds add up to the total.
+    """Return the result of all claims: numbers by verdict, by kind and verdict, and disagreements. Families
+    are counted too, so that the numbers of all kinds add up to the total. `chance` is a bound on the
+    probability that any claim disagrees if all are true: the sum over all that is judged together, which are
+    the tests and reproductions of a figure, and each other claim with an uncertainty.
     """
     found = verdicts(rows)
+    judged = [row for row in rows if row["uncertainty"] > 0.0 and row["verdict"] != "no verdict"]
+    together = {(row["figure"], _is_tested_alone(row) and row["claim"]) for row in judged}
     return {
         "agree": found.get("agrees", 0) + found.get("reproduced", 0),
         "open": found.get("inconclusive", 0),
         "in_error": found.get("source in error", 0),
         "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
+        "chance": min(1.0, FAMILY_LEVEL * len(together)),
     }
+
+
+def _is_tested_alone(row: dict[str, Any]) -> bool:
+    return row["kind"] in ("identity", "family")
 
 
 def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
@@ -294,9 +296,8 @@ def verdicts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
 
 @dataclass(frozen=True)
 class Picture:
-    """Addresses of a figure's picture: full size, in one column for narrow screens, and key picture.
-
-    The first two have sizes in pixels of the page, so that the page does not move while they are loaded.
+    """Addresses of a figure's picture: full size, in one column for narrow screens, and key picture. The
+    first two have sizes in pixels of the page, so that the page does not move while they are loaded.
     """
 
     large: str
@@ -307,10 +308,9 @@ class Picture:
 
 
 def picture(path: Path, one_file: bool) -> Picture:
-    """Return the picture of a figure whose PNG is `path`.
-
-    The SVG is in the same folder. The picture in one column is in the subfolder journal/, the key picture in
-    key/. If `one_file`, pictures are stored in the page as WebP, with a third of the size.
+    """Return the picture of a figure whose PNG is `path`. The SVG is in the same folder. The picture in one
+    column is in the subfolder journal/, the key picture in key/. If `one_file`, pictures are stored in the
+    page as WebP, with a third of the size.
     """
     column, key = path.parent / "journal" / path.name, path.parent / "key" / path.name
     size, narrow = _size(path), _size(column)
@@ -336,9 +336,8 @@ def _size(path: Path) -> tuple[int, int]:
 
 
 def address(path: Path, one_file: bool = False) -> str:
-    """Return the address of a file in results/, relative to the page.
-
-    If `one_file` is True, the address contains the data of the file.
+    """Return the address of a file in results/, relative to the page. If `one_file` is True, the address
+    contains the data of the file.
     """
     if one_file:
         return _data(mimetypes.guess_type(path.name)[0] or "", path.read_bytes())
@@ -346,9 +345,8 @@ def address(path: Path, one_file: bool = False) -> str:
 
 
 def films(paths: list[Path], one_file: bool) -> dict[str, str]:
-    """Return name and address of each film that the page shows.
-
-    A page in one file has only the first film, because all films together are larger than the rest.
+    """Return name and address of each film that the page shows. A page in one file has only the first film,
+    because all films together are larger than the rest.
     """
     return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
 
