@@ -71,12 +71,6 @@ class Mutant:
     start: int
     end: int
 
-    @property
-    def source(self) -> str:
-        """The file with the error in it."""
-        text = (PROJECT / self.path).read_text(encoding="utf-8")
-        return text[: self.start] + self.new + text[self.end :]
-
 
 def changes(tree: ast.AST) -> Iterator[tuple[str, ast.AST, ast.AST | str]]:
     """Yield the kind of each error, the node that it changes, and the node or text in its place."""
@@ -212,7 +206,8 @@ def test_files(mutant: Mutant) -> list[str]:
 def judge(mutant: Mutant, tier: str, copy: Path) -> str:
     """Return the first test of a tier that fails with an error, "" if none does."""
     target = copy / mutant.path
-    target.write_text(mutant.source, encoding="utf-8")
+    before = target.read_text(encoding="utf-8")
+    target.write_text(before[: mutant.start] + mutant.new + before[mutant.end :], encoding="utf-8")
     plain = {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
     plain["NUMBA_DISABLE_JIT"] = "1"
     interpreted = (
@@ -236,7 +231,7 @@ def judge(mutant: Mutant, tier: str, copy: Path) -> str:
             if done.returncode not in (0, 5):  # 5: no test of this tier
                 return f"exit code {done.returncode}"
     finally:
-        shutil.copy(PROJECT / mutant.path, target)
+        target.write_text(before, encoding="utf-8")
     return ""
 
 

@@ -64,15 +64,17 @@ PLAIN = [
     *((KINDS[name].scene, gp.EventDriven()) for name in ("periodic", "mixture", "gravity", "piston")),
     (replace(gas(2, 100, 0.1, ("wall", "periodic")), faces=PLATES), gp.EventDriven()),
     (replace(KINDS["slit"].scene, faces={"z_low": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}), gp.DSMC(0.1)),
+    (KINDS["walls"].scene, gp.TimeStepped(2.0**-6, boxes_per_side=2)),
+    (KINDS["periodic"].scene, gp.EventDriven(), gp.StressTally()),
     (gas(3, 100, 0.3), gp.EventDriven()),
     (gas(3, 20, 0.55, arrangement="compressed"), gp.EventDriven()),
 ]
-"""Scenes and engines that many tests have: nothing records their events, but of discs."""
+"""Scenes, engines and tallies that many tests have: nothing records their events, but of discs."""
 
 
-def compile_plain(scene, engine):
+def compile_plain(scene, engine, *tallies):
     """Begin a run."""
-    simulation = gp.Simulation(scene, engine, 1)
+    simulation = gp.Simulation(scene, engine, 1, tallies=list(tallies))
     simulation.record_events = engine.records_events and scene is DISCS
     simulation.advance(until=0.25)
     return loops_in_use()

@@ -312,9 +312,9 @@ def repeated_simulation(engine, name, form="frames", intervals=FRAMES):
     form."""
     start = start_of(engine, name)
     tallies = [tally for key, tally in start.tallies.items() if key == form]
-    pairs = start.engine.records_events and not start.scene.is_open
+    pairs = start.engine.records_events and not start.scene.is_open and not tallies
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
-    simulation.record_events = pairs and not tallies
+    simulation.record_events = pairs
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=intervals * start.interval + 0.5 * quantum)
     return repeat_run(simulation, pairs=pairs)

@@ -147,6 +147,7 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(source_column, mon
     assert gravity.layer_fractions(source_column, 2)["share"][0] == pytest.approx([1.0, 0.5])
 
 
+@pytest.mark.thorough
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(source_column, tmp_path):
     settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3}
     own = replace(source_column, experiment="column_source")
