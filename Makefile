@@ -1,5 +1,5 @@
-# make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=0.25 makes
-#                 shorter runs, which a later run of more effort continues
+# make            set up, reproduce every figure, write results/report.html, print the verdicts; EFFORT=1 continues all
+#                 runs to four times their length; FROM=archive.zip measures the points of a deposit instead
 # make decide     continue exactly the runs behind claims that are open; says first which and how long
 # make first      set up, three figures of the sources: results/first.html, in some two minutes
 # make test       set up, run the tests that catch most per second; OPTIONS=... are options of pytest
@@ -30,8 +30,6 @@ CORES ?= all
 QUIETLY = -m pip --quiet --disable-pip-version-check
 PIP = .venv/bin/python $(QUIETLY)
 SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES) $(if $(EFFORT),--config effort=$(EFFORT))
-# What `make decide` has made longer stays so.
-EFFORTS = $$(test ! -e results/efforts.yaml || echo --configfile=results/efforts.yaml)
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 
@@ -39,15 +37,18 @@ VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims im
 own = @test ! -e $(1) -o -e $(1)/made_by_make -o -e $(1)/environment.stamp || { echo \
 	"make: $(1) exists and was not made by make, which would replace it; move it away" >&2; exit 2; }
 
+START = .venv/bin/python -c 'import sys; from gaspart.reproduction.start import start; sys.exit(start(*sys.argv[1:]))'
+
 all: setup
-	$(SNAKEMAKE) --quiet rules $(EFFORTS)
+	$(if $(FROM),@$(START) $(FROM) config/config.yaml)
+	$(SNAKEMAKE) --quiet rules
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
 
 # Doubles the effort of what open claims depend on until each is decided, or has an effort of 4.
 decide: setup
-	@while .venv/bin/python -m gaspart budget config/config.yaml --next results/efforts.yaml $(if $(EFFORT),--effort $(EFFORT)); \
-		do .venv/bin/python -m snakemake --cores $(CORES) --quiet rules $(EFFORTS) || exit; done
+	@while .venv/bin/python -m gaspart budget config/config.yaml --next; \
+		do $(SNAKEMAKE) --quiet rules || exit; done
 	$(VERDICTS) results/tables/claims.csv
 
 first: setup
@@ -149,7 +150,7 @@ lint: develop
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
-	.venv/bin/python -m snakefmt --check Snakefile workflow
+	.venv/bin/python -m snakefmt --check workflow
 	.venv/bin/python -m snakemake --lint
 
 report: setup

@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+from dataclasses import fields, is_dataclass
 
 import pytest
 
@@ -59,3 +60,14 @@ def test_a_wrong_example_is_noticed():
 def test_every_public_name_is_documented():
     assert len(ITEMS) > 200
     assert [name for name, item in ITEMS.items() if not inspect.getdoc(item)] == []
+
+
+def test_fields_are_documented_by_their_declarations():
+    classes = [one for one in ITEMS.values() if is_dataclass(one)]
+    declared = [one for one in classes if any("kind" in item.metadata for item in fields(one))]
+    assert len(declared) >= 17
+    for one in declared:
+        text = inspect.getdoc(one)
+        assert text.count("\nParameters\n") == 1
+        for item in fields(one):
+            assert f"\n{item.name} : " in text and item.metadata["kind"]["description"] in text

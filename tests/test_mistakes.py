@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gaspart as gp
-from gaspart.errors.words import MissingName, meant
+from gaspart.errors import MissingName, meant
 
 BOX = gp.Container((9.0, 9.0), boundary="periodic")
 GAS = gp.Species(20, 0.5, temperature=1.0)

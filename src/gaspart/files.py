@@ -37,10 +37,8 @@ class FileKind:
 
 
 def begins_with(*beginnings: bytes, at: int = 0) -> Callable[[Path], bool]:
-    """Return a test for one of several byte strings at a position in a file.
-
-    beginnings : byte strings
-    at : offset from the start of the file
+    """Return a test for one of several byte strings at a position in a file. `beginnings`: byte strings.
+    `at`: offset from the start of the file.
     """
 
     def recognises(path: Path) -> bool:

@@ -83,9 +83,8 @@ _process = _Process()
 def exit_on_signals(announce: Callable[[str], None] | None = None) -> None:
     """End this process at SIGINT and SIGTERM with exit code 130 or 143 and one line. No scratch files are
     left. A second call replaces `announce`. Signals that are ignored remain ignored, for example in a
-    background process of a shell script. Only the main thread may call this function.
-
-    announce : function that prints the line, by default to stderr
+    background process of a shell script. Only the main thread may call this function. `announce`: function
+    that prints the line, by default to stderr.
     """
     _process.announce = announce
     if _process.watched:

@@ -40,7 +40,7 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
         if name in aliases:
             return namespace.setdefault(name, load(aliases[name]))
         if name not in homes:
-            from gaspart.errors.words import MissingName  # takes 2 ms
+            from gaspart.errors import MissingName
 
             parts = [part for part in ("analysis", "theory") if part in homes]
             inner = [f"{part}.{each}" for part in parts for each in dir(import_module(f"{package}.{part}"))]

@@ -30,18 +30,9 @@ ENERGY_DRIFT = {"float64": 1e-9, "float32": 1e-3}
 EXCHANGE_ERROR = {"float64": 2.0**-52, "float32": 2.0**-23}
 """Allowed additional drift due to rounding, relative to the energy exchanged with contacts and walls."""
 PROPERTIES = (
-    "positions",
-    "unwrapped",
-    "images",
-    "velocities",
-    "speeds",
-    "spins",
-    "kinetic_energies",
-    "radii",
-    "masses",
-    "moments_of_inertia",
-    "species",
-)
+    "positions", "unwrapped", "images", "velocities", "speeds", "spins", "kinetic_energies", "radii",
+    "masses", "moments_of_inertia", "species",
+)  # fmt: skip
 """Properties of particles that `Simulation.properties` can return; `State` defines them."""
 
 
@@ -56,6 +47,11 @@ class Page(Protocol):
 
 class Simulation:
     """A run of a scene by an engine, which is advanced in time.
+
+    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
+    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
+    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
+    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Parameters
     ----------
@@ -83,13 +79,6 @@ class Simulation:
     See Also
     --------
     run : Simulate a scene and write a trajectory.
-
-    Notes
-    -----
-    If the shear rates of `initial` and of the scene differ, the flow of `initial` is subtracted from the
-    velocities, and the flow of the scene is added. The displacement of sheared images, and the position and
-    velocity of a piston, are the values in `initial`. If `initial` has no piston, the piston starts at rest
-    at its side of the container. Vibrating faces start at the beginning of a period.
 
     Examples
     --------
@@ -175,22 +164,9 @@ class Simulation:
         ------
         SceneError
             If the simulation has advanced, or the new scene is impossible; nothing is changed then.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> simulation = gp.Simulation(gp.Scene(gp.Container((9.0, 9.0))))
-        >>> simulation.add(position=(4.0, 4.0), velocity=(1.0, 0.0), radius=0.5)
-        >>> simulation.add_random(count=20, radius=0.2, temperature=1.0)
-        >>> simulation.add_wall(start=(7.0, 1.0), end=(7.0, 8.0))
-        >>> simulation.scene.count, len(simulation.scene.walls)
-        (21, 1)
         """
-        self._change(
-            self.scene.with_particles(
-                gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
-            )
-        )
+        particle = gaspart.Particle(tuple(position), tuple(velocity), radius, mass, **properties)
+        self._change(self.scene.with_particles(particle))
 
     def add_random(self, count: int, radius: float, **properties: Any) -> None:
         """Add particles at random positions, as `add` does; `properties` are those of `Species`."""
@@ -211,11 +187,9 @@ class Simulation:
     def _change(self, scene: Scene) -> None:
         """Set up the simulation again for another scene; nothing changes if this fails."""
         if self._advanced:
-            raise SceneError(
-                "scene", "under way", "particles and walls can only be added before the first advance"
-            )
-        before = self.scene
-        self.scene = scene
+            rule = "particles and walls can only be added before the first advance"
+            raise SceneError("scene", "under way", rule)
+        before, self.scene = self.scene, scene
         try:
             self._set_up()
         except SceneError:
@@ -231,6 +205,8 @@ class Simulation:
         max_work: int | None = None,
     ) -> None:
         """Advance by a duration, to a time, or by some events, whichever is reached first.
+
+        The time-stepped engine stops at the end of the last step that ends by the target time.
 
         Parameters
         ----------
@@ -250,20 +226,6 @@ class Simulation:
         SceneError
             If there is no target, or if the target is in the past or not a number. The simulation is
             unchanged in this case.
-
-        Notes
-        -----
-        The time-stepped engine stops at the end of the last step that ends by the target time.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> simulation.advance(until=3.0)
-        >>> simulation.time
-        3.0
         """
         if max_events is not None:
             max_events = count_of("max_events", max_events)
@@ -327,23 +289,10 @@ class Simulation:
         return self._dynamics.tally
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally; this is faster than reading `tally`.
+        """Return the sums of an optional tally by its name; this is faster than reading `tally`.
 
-        Parameters
-        ----------
-        tally : str
-            Name of the tally.
-
-        Returns
-        -------
-        ndarray
-            The sums. For "stress", the array has the shape (2 d^2 + d,), and contains the sums of the stress
-            tensor, of its collisional part and of the heat flux.
-
-        Raises
-        ------
-        SceneError
-            If the simulation was created without this tally.
+        For "stress", the array (2 d^2 + d,) contains the sums of the stress tensor, of its collisional part
+        and of the heat flux. Raises SceneError if the simulation was created without this tally.
         """
         if not any(optional_tally.name == tally for optional_tally in self.tallies):
             raise SceneError(tally, False, "was not requested; name the tally when the simulation is made")
@@ -373,12 +322,7 @@ class Simulation:
         The arrays for M events are time (M,), particles (M, 2), positions and velocities (M, 2, d). If
         contacts are rough, there are also spins, (M, 2) in 2D and (M, 2, 3) in 3D. The second entry of
         `particles` is negative for hits: -1 - n at face n of the container or at the edge of its well, and -1
-        - 2d - n at interior wall n.
-
-        Raises
-        ------
-        SceneError
-            If `record_events` was not set to True.
+        - 2d - n at interior wall n. Raises SceneError if `record_events` was not set to True.
         """
         if self._log is None:
             raise SceneError("events", None, "set record_events to True before advancing")
@@ -398,11 +342,6 @@ class Simulation:
         interval : float, [time], optional
             Time between states. Requires by="time".
 
-        Yields
-        ------
-        State
-            The states, from the start to the present time.
-
         Raises
         ------
         SceneError
@@ -415,11 +354,8 @@ class Simulation:
         elif by == "event":
             again = self.again()
             yield again.state
-            while True:
+            while again.time < self.time:
                 again.advance(until=self.time, max_events=1)
-                if again.time >= self.time:
-                    yield again.state
-                    return
                 yield again.state
         else:
             raise SceneError("by", by, 'must be "time" or "event"')
@@ -473,15 +409,10 @@ class Simulation:
         return {"time": np.array(times), **arrays}
 
     def check_invariants(self, state: State | None = None) -> None:
-        """Check that the energy does not drift, and that positions and velocities are finite.
+        """Raise SimulationError if the energy has drifted, or a position or velocity is not finite.
 
         Energy that contacts and walls add or remove does not count as drift. The caller may pass the present
         state if it is already computed.
-
-        Raises
-        ------
-        SimulationError
-            If the energy has drifted, or a position or velocity is not finite.
         """
         state = self.state if state is None else state
         if not (np.isfinite(state.positions).all() and np.isfinite(state.velocities).all()):
@@ -502,24 +433,15 @@ class Simulation:
             )
 
     def show(self, frames: int = 200) -> Page:
-        """Return an interactive view of the run so far (see `view`), which shows itself in a notebook.
-
-        Raises
-        ------
-        SceneError
-            If the simulation has not advanced.
-        """
+        """Return an interactive view of the run so far, see `view`; SceneError if it has not advanced."""
         # imported by its public name, because views are made from simulations
         return gaspart.view(self, frames)
 
     def checkpoint(self) -> dict[str, np.ndarray]:
         """Return a checkpoint, from which `restore` continues bitwise identically.
 
-        Returns
-        -------
-        dict of str to ndarray
-            Arrays of the present state, and the data that identify the run: scene, seed, engine, version and,
-            if the caller supplied it, the initial state.
+        It has arrays of the present state, and the data that identify the run: scene, seed, engine, version
+        and, if the caller supplied it, the initial state.
         """
         return {**self._dynamics.checkpoint(), **self._identity()}
 
@@ -540,17 +462,6 @@ class Simulation:
         SceneError
             If the checkpoint belongs to another simulation, or if arrays are missing. The simulation is
             unchanged in this case.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> simulation = gp.Simulation(scene, seed=1)
-        >>> simulation.advance(duration=2.0)
-        >>> later = simulation.again()
-        >>> later.restore(simulation.checkpoint())
-        >>> later.time
-        2.0
         """
         check_identity(checkpoint, self._identity())
         self._advanced = True

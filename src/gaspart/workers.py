@@ -59,12 +59,9 @@ def in_processes(
     """Call a function of a module in several processes at the same time. The call is function(send,
     *arguments). A signal takes effect after all calls have written a checkpoint and ended. If the caller's
     signal handler returns, the calls are started again. A SceneError or SimulationError of a call is raised
-    after all other calls have ended.
-
-    calls : arguments of each call
-    workers : number of processes at the same time
-    finished : called as finished(n, result) when call n has returned, or when its process is `Lost`
-    received : called as received(n, message) when a process has sent a message with send(message)
+    after all other calls have ended. `calls`: arguments of each call. `workers`: number of processes at the
+    same time. `finished`: called as finished(n, result) when call n has returned, or when its process is
+    `Lost`. `received`: called as received(n, message) when a process has sent a message with send(message).
     """
     waiting = list(reversed(range(len(calls))))
     running: list[_Worker] = []

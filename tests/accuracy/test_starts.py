@@ -126,3 +126,27 @@ def test_what_replicas_never_reach_is_refused_and_otherwise_ends_when_noise_is_a
     )
     assert replace(known, scatter=0.04).met and not replace(known, scatter=0.06, noise=0.025).met
     assert replace(known, replicas=1).met and replace(known, replicas=1).error == 0.01
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_density_at_a_piston_scatters_with_the_enthalpy_of_the_start(dimension):
+    """Points of a given enthalpy H have the height h with the density h^N (H - p h)^(freedoms / 2 - 1)."""
+    count, sides = 150, (1.0,) * (dimension - 1)
+    kind, face = gp.Species(count, 1e-6, temperature=1.0), gp.Piston(mass=150.0, pressure=count / 20.0)
+    made = gp.Scene(
+        gp.Container((*sides, 20.0), "wall"), [kind], faces={"xyz"[dimension - 1] + "_high": face}
+    )
+    enthalpy = count * (0.5 * dimension + 1.0)
+    heights = np.linspace(10.0, 30.0, 4001)
+
+    def density(total):
+        free = np.maximum(total - count * heights / 20.0, 1e-300)
+        weight = count * np.log(heights) + (0.5 * (dimension * count + 1) - 1.0) * np.log(free)
+        weight = np.exp(weight - weight.max())
+        return np.cumsum((weight / heights)[::-1])[::-1] / weight.sum()
+
+    low, high = density(0.999 * enthalpy), density(1.001 * enthalpy)
+    change = np.abs(high - low).max() / 0.002 / density(enthalpy)[0]
+    expected = change * math.sqrt(0.5 * dimension * count) / enthalpy
+    assert start_scatter(Target(made, "density")).value == pytest.approx(expected, rel=0.03)
+    assert start_scatter(Target(made, "temperature")).value < 0.3 * expected

@@ -6,15 +6,17 @@ import csv
 import io
 import math
 
+import accuracy_table
 import numpy as np
 import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart.accuracy import fit, speed, table
+from gaspart.accuracy import table
 from gaspart.accuracy.table import price_of
 from gaspart.analysis.observables import observables_with
 from gaspart.cli import main
+from gaspart.reproduction.cost import speed_factor
 
 
 def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
@@ -62,7 +64,7 @@ def test_noise_of_the_pressure_of_a_dilute_gas_is_that_of_independent_contacts(e
 
 
 def test_this_machine_is_timed_in_less_than_some_seconds():
-    assert 0.05 < speed.factor(3, "event", "float64", 500) < 20.0
+    assert 0.05 < speed_factor(3, "event", "float64", 500) < 20.0
 
 
 # What the features of a scene cost with an engine.
@@ -177,7 +179,7 @@ def folder(tmp_path):
 
 
 def test_the_table_holds_what_was_measured(folder, capsys):
-    fit.main(str(folder))
+    accuracy_table.main(str(folder))
     output = capsys.readouterr().out
     assert output.startswith("# What accuracy costs")
     rows = list(csv.DictReader(io.StringIO("".join(output.splitlines(keepends=True)[2:]))))

@@ -43,7 +43,7 @@ def without_wrong(found):
     return found
 
 
-def gsd_file(path, positions, velocities, stored=None, steps=100, lengths=None, dimensions=None):
+def gsd_file(path, positions, velocities, stored=None, steps=100, lengths=None, dimensions=3):
     """A GSD file with velocities in the frames `stored`, by default all."""
     hoomd = pytest.importorskip("gsd.hoomd")
     with hoomd.open(str(path), "w") as file:
@@ -51,8 +51,7 @@ def gsd_file(path, positions, velocities, stored=None, steps=100, lengths=None, 
             frame = hoomd.Frame()
             frame.configuration.step = steps * n
             frame.configuration.box = [*(lengths or (SIDE,) * 3), 0, 0, 0]
-            if dimensions is not None:
-                frame.configuration.dimensions = dimensions
+            frame.configuration.dimensions = dimensions
             frame.particles.N = len(places)
             frame.particles.position = places
             if stored is None or n in stored:
@@ -303,9 +302,7 @@ def test_sizes_of_rows_in_any_order_say_nothing(tmp_path, right):
     assert "another order" in without_wrong(lines(path))["overlaps"].text
 
 
-@pytest.mark.parametrize(
-    ("height", "dimensions"), [(0.0, None), (0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (1.0, None)]
-)
+@pytest.mark.parametrize(("height", "dimensions"), [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3)])
 def test_discs_of_gsd(tmp_path, height, dimensions):
     run = gp.run(gas(2, 100, 0.2), gp.EventDriven(), 1, 3.0, INTERVAL, tmp_path / "d.nc")
     with gp.open_trajectory(run) as data:
@@ -348,21 +345,6 @@ def test_options_come_before_what_an_xyz_file_states(tmp_path, comment, options)
     frames = read_frames(path, radius=0.5, **options)
     assert frames.dimension == 2 and tuple(frames.lengths) == (8.0, 8.0) and not any(frames.periodic)
     assert frames.positions[0].tolist() == [[1.0, 1.0], [6.0, 6.0]]
-
-
-@pytest.mark.parametrize(
-    ("comment", "rule"),
-    [
-        ('Lattice="8 8"', "3 or 4 or 9 numbers; give --lengths"),
-        ('Lattice="8 8 8" pbc="F F T F"', "for each of 2 axes; give --boundary"),
-        ('Lattice="8 8 8" Origin="1"', "2 or 3 numbers; give --origin"),
-        ('Lattice="8 1 0 8"', "tilted"),
-    ],
-)
-def test_refusals_of_xyz_files_name_the_option(tmp_path, comment, rule):
-    path = xyz_file(tmp_path / "a.xyz", [np.array([[1.0, 1.0], [6.0, 6.0]])], comment=comment)
-    with pytest.raises(gp.SceneError, match=rule):
-        read_frames(path, radius=0.5)
 
 
 def test_no_number_of_collisions_is_negative(tmp_path, right):

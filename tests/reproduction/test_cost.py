@@ -51,6 +51,27 @@ def test_a_config_costs_what_it_is_when_laid_over_the_one_beside_it(tmp_path, mo
     assert rest.startswith("not predicted") and rest.endswith(": timed")
 
 
+def test_the_status_states_what_is_left_and_its_time(tmp_path, monkeypatch):
+    monkeypatch.setattr(cost, "_speed", lambda gas, engine, precision: 1.0)
+    (tmp_path / "config.yaml").write_text(GASES.replace("experiments: [gas]", "experiments: [gas, timed]"))
+
+    def left():
+        lines = cost.lines(tmp_path / "config.yaml", progress=True)
+        assert lines[1].split()[1:] == lines[2].split()[1:]  # of all, and of the only figure
+        return lines[2].removeprefix("gas_render").split(maxsplit=2)
+
+    points, missing, seconds = left()
+    assert (points, missing) == ("3", "3") and float(seconds.split(",")[0]) > 10.0
+    assert seconds.endswith(", and 1 points of unknown time")
+    (tmp_path / "results/points/gas/packing_fraction=0.1").mkdir(parents=True)
+    (tmp_path / "results/points/timed").mkdir()
+    (tmp_path / "results/points/timed/packing_fraction=0.1.nc").touch()
+    log = tmp_path / "results/logs/simulate/gas/packing_fraction=0.1.log"
+    log.parent.mkdir(parents=True)
+    log.write_text("processor time: 7.00 s, memory: 5.0 MB\n")
+    assert left() == ["3", "1", "7"]
+
+
 # Where the time of a reproduction went, and which length suffices.
 
 

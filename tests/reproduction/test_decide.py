@@ -7,8 +7,10 @@ import pytest
 import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
+from gaspart.errors import SceneError
 from gaspart.reproduction import decide
 from gaspart.reproduction.claims import Claim
+from gaspart.reproduction.config import EFFORTS, effort_of, keep_efforts, read_efforts, write_efforts
 from gaspart.reproduction.decide import Open, find_open, next_efforts
 
 BLOCK = {"experiments": ["hot", "cold"]}
@@ -70,3 +72,19 @@ def test_efforts_are_doubled_up_to_the_most_and_hopeless_claims_are_left():
     ]
     assert next_efforts(undecided, present) == {"a": 0.5, "b": 4.0}
     assert next_efforts(undecided[1:], present) == {}
+
+
+def test_points_keep_the_largest_effort_with_which_they_were_made(tmp_path):
+    config = {"effort": 0.25, "experiments": {"a": {}, "b": {"effort": 2.0}, "c": {}}}
+    write_efforts(tmp_path, {"a": 1.0, "b": 1.0})
+    write_efforts(tmp_path, {"c": 0.25, "removed": 4.0})
+    assert keep_efforts(config, tmp_path) == {"a": 1.0}
+    assert [effort_of(config, name) for name in "abc"] == [1.0, 2.0, 0.25]
+    assert keep_efforts(config, tmp_path / "none") == {}
+
+
+def test_efforts_that_cannot_be_read_are_named_with_their_file(tmp_path):
+    (tmp_path / EFFORTS).write_text("a: much\n")
+    with pytest.raises(SceneError) as caught:
+        read_efforts(tmp_path)
+    assert (caught.value.key, caught.value.file) == ("a", str(tmp_path / EFFORTS))

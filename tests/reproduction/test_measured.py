@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from measured import COLUMNS, reference_values
+from relaxation import relaxation
 from reproduction.figures.test_virial import equation_of_state
 
 import gaspart
 from gaspart import theory
-from gaspart.reproduction.relaxation import relaxation
 
 
 def gases(**columns):

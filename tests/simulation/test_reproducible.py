@@ -15,8 +15,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.trajectory import amber, recording
 from gaspart.trajectory.amber import frame_count
-from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 
 ENGINES = {
     "event": gp.EventDriven(),

@@ -11,9 +11,11 @@ from theory.homogeneous import homogeneous_gas, rough_discs, rough_start
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.theory.granular import cooling_rate_finite_size_factor, driven_cumulant, finite_size_cumulant
-from gaspart.theory.rough import (
+from gaspart.theory.granular import (
     ROUGH_START_UNCERTAINTY,
+    cooling_rate_finite_size_factor,
+    driven_cumulant,
+    finite_size_cumulant,
     rough_cooling,
     rough_matrix,
     rough_start_excess,

@@ -64,6 +64,30 @@ def test_what_is_wide_moves_the_page_or_has_no_name_is_noticed(smoke, tmp_path):
     assert found["moved"] and found["page"] > 1400 and any("A wide text" in one for one in found["wide"])
 
 
+PLAIN = """
+const frame = document.createElement("iframe");
+Object.assign(frame, { width: 1400, height: 900, src: "report.html" });
+frame.sandbox = "allow-same-origin";  // without scripts
+document.body.prepend(frame);
+await new Promise(loaded => { frame.onload = loaded; });
+const page = frame.contentDocument, seen = it => it.getClientRects().length > 0;
+const gas = () => page.querySelector(".live iframe").contentDocument;
+while (!gas().querySelector("#still path")) await new Promise(go => setTimeout(go, 50));
+return {
+  figures: [...page.querySelectorAll("section.figure h3")].filter(seen).length,
+  seen: ["nav summary", ".result", "#claims"].filter(name => seen(page.querySelector(name))),
+  gas: [...gas().querySelectorAll("header, aside, canvas, button, #still")].filter(seen).map(it => it.id),
+};
+"""
+
+
+@needs_chromium
+def test_without_scripts_the_report_has_its_contents_and_a_still_gas(smoke, tmp_path):
+    found = found_by(PLAIN, smoke.path / "results/smoke/report.html", tmp_path, 1400)
+    assert found["figures"] == len(smoke.figures) and found["gas"] == ["still"]
+    assert found["seen"] == ["nav summary", ".result", "#claims"]
+
+
 def test_the_first_screen_is_small_and_nothing_is_fetched_from_elsewhere(smoke):
     results = smoke.path / "results/smoke"
     page, gas = ((results / name).read_text(encoding="utf-8") for name in ("report.html", "play.html"))

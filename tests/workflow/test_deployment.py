@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import subprocess
 import zipfile
 
 import pytest
@@ -21,7 +22,7 @@ SNAKEFILE = f"""
 configfile: "settings.yaml"
 
 module gaspart:
-    snakefile: "{ROOT / "Snakefile"}"
+    snakefile: "{ROOT / "workflow/Snakefile"}"
     config: config
 
 use rule * from gaspart
@@ -45,7 +46,7 @@ authors:
 """
 PREFIXED = f"""
 module other:
-    snakefile: "{ROOT / "Snakefile"}"
+    snakefile: "{ROOT / "workflow/Snakefile"}"
     config: config
     prefix: "parts/walls"
 
@@ -91,6 +92,35 @@ def test_a_module_with_a_prefix_makes_everything_below_it_with_the_same_bits(tmp
     assert "report" in here.plan("report", source=project)  # of the module without a prefix
 
 
+@pytest.mark.parametrize(("host", "prefix"), [("file", ""), ("hub", "parts/gas")])
+def test_a_module_from_a_repository_runs(tmp_path, monkeypatch, host, prefix):
+    """Its files are those of the commit, not of a folder; the hub's clone is where Snakemake would put it."""
+    project = copy_of_project(tmp_path / "project").path
+    for line in ("init -q", "add .", "-c user.name=a -c user.email=a commit -q -m all"):
+        subprocess.run(["git", *line.split()], cwd=project, check=True)
+    asked = subprocess.run(
+        ["git", "rev-parse", "HEAD"], cwd=project, check=True, capture_output=True, text=True
+    )
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    clones = tmp_path / "cache/snakemake/snakemake/source-cache/snakemake-git-cache/github.com"
+    subprocess.run(["git", "clone", "-q", "--bare", project, clones / "an/owner"], check=True)
+    for name in ("src", "workflow"):
+        shutil.rmtree(project / name)
+    repository = project if host == "file" else "an/owner"
+    source = f'git{host}("{repository}", path="workflow/Snakefile", commit="{asked.stdout.strip()}")'
+    text = SNAKEFILE.replace(f'"{ROOT / "workflow/Snakefile"}"', source)
+    text = text.replace("config: config", f'config: config\n    prefix: "{prefix}"') if prefix else text
+    here = Workspace(tmp_path / "here")
+    here.path.mkdir()
+    (here.path / "Snakefile").write_text(text)
+    config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
+    write_yaml(here.path / "settings.yaml", config)
+    done = here.snakemake("--cores", "1", "all", source=tmp_path / "nowhere")
+    assert done.returncode == 0, done.stdout[-3000:]
+    assert (here.path / prefix / "results/figures/my_gas.png").read_bytes().startswith(b"\x89PNG")
+    assert here.plan("all", source=tmp_path / "nowhere") == {}
+
+
 def test_a_module_without_a_config_is_one_line(tmp_path):
     (tmp_path / "Snakefile").write_text(SNAKEFILE.replace('configfile: "settings.yaml"', ""))
     done = Workspace(tmp_path).snakemake("--dry-run", "--cores", "1", source=ROOT)
@@ -103,7 +133,7 @@ def test_the_module_of_the_docs_beside_a_rule_all_of_its_own(tmp_path):
     page = (ROOT / "docs/workflow.md").read_text(encoding="utf-8")
     block = re.search(r'^    configfile: "settings.yaml"\n.*?(?=^\S)', page, re.MULTILINE | re.DOTALL)[0]
     text = "\n".join(line.removeprefix("    ") for line in block.splitlines())
-    (tmp_path / "Snakefile").write_text(text.replace("/path/to/gaspart/Snakefile", str(ROOT / "Snakefile")))
+    (tmp_path / "Snakefile").write_text(text.replace("/path/to/gaspart", str(ROOT)))
     config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
     write_yaml(tmp_path / "settings.yaml", config)
     assert Workspace(tmp_path).plan(source=ROOT)["figure"] == 1
@@ -178,10 +208,3 @@ def test_a_point_that_another_clone_has_simulated_comes_from_the_shared_cache(tm
         assert len(list((tmp_path / "shared").iterdir())) == 4
     replicas = list(here.path.glob("results/smoke/points/virial_discs/*/replica-0.nc"))
     assert len(replicas) == 4 and all(path.is_symlink() for path in replicas)
-
-
-def test_the_catalog_finds_the_same_workflow(fresh):
-    smoke = ["--configfile", "config/smoke.yaml"]
-    found = fresh.plan("-s", "workflow/Snakefile", *smoke)
-    assert found.pop("everything") == 1
-    assert found | {"all": 1} == fresh.plan(*smoke)

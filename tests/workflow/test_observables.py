@@ -21,7 +21,7 @@ WORDS = {
     "analysis/fields.py": "quantities of a field",
     "rendering/view.py": "by what particles are coloured",
     "theory/geometry.py": "names of arguments",
-    "errors/words.py": "words of other programs",
+    "errors.py": "words of other programs",
     "theory/columns.py": "what differs between two columns of gas",
 }
 """Modules in which some of the names are words of something else, beside the figures, whose data sets have

@@ -12,7 +12,7 @@ from gaspart.reproduction.config import merged_with_default
 from gaspart.yaml_text import read_yaml, write_yaml
 
 ROOT = Path(__file__).parents[2]
-PARTS = ["Snakefile", "config", "profiles", "src", "workflow"]
+PARTS = ["config", "profiles", "src", "workflow"]
 SMOKE = ["--configfile", "config/smoke.yaml"]
 
 

@@ -3,15 +3,38 @@
 import gc
 import os
 import shlex
+import shutil
 import sys
+import tempfile
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 # Planning makes a million objects, nearly all of which stay: looking for cycles among them takes a tenth of its time.
 gc.set_threshold(100_000)
 
+
+def checked_out(source):
+    """The folder with the files of a commit: Snakemake reads a module from a repository file by file."""
+    from git import Repo
+
+    repository = source.hosted_repo.repo if hasattr(source, "hosted_repo") else Repo(source.repo_path)
+    commit = repository.commit(source.ref)
+    folder = Path(".snakemake/gaspart", commit.hexsha).resolve()
+    if not folder.exists():
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder.parent) as partial:
+            repository.git.archive(commit.hexsha, "src", "workflow", output=f"{partial}/files.tar")
+            shutil.unpack_archive(f"{partial}/files.tar", f"{partial}/files", filter="data")
+            with suppress(OSError):  # another process was faster
+                os.rename(f"{partial}/files", folder)
+    return folder
+
+
 # Where the workflow is, absolute, and from the working directory: another one where it is used as a module.
-ROOT = Path(str(workflow.current_basedir.path)).resolve().parents[1]
+HERE = workflow.current_basedir
+ROOT = checked_out(HERE) if hasattr(HERE, "ref") else Path(str(HERE.path)).resolve().parents[1]
+RULES = ROOT / "workflow/rules"
 FOLDER = Path(os.path.relpath(ROOT))
 SCRIPTS = ROOT / "workflow/scripts"
 sys.path.insert(0, str(ROOT / "src"))
@@ -22,16 +45,21 @@ if " " in sys.executable:
 from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
-from gaspart.reproduction.config import FAMILIES, add_families, check, explain_error, is_own
-from gaspart.reproduction.config import read_numbers, remove_null
+from gaspart.reproduction.config import EFFORTS, FAMILIES, add_families, check, explain_error, is_own
+from gaspart.reproduction.config import effort_of, keep_efforts, read_numbers, remove_null, write_efforts
 from gaspart.reproduction import registry
 from gaspart.reproduction.registry import caption, find, of_claims
-from gaspart.reproduction.points.modules import digest, kernel_digest, measuring_digest
+from gaspart.reproduction.points.modules import digest, measuring_digest, point_sources, stage_sources, stamp
 from gaspart.reproduction.points.point import TRAJECTORIES
 from gaspart.reproduction.points.points import all_points
 from gaspart.reproduction.points.points import figure_points as points_of_figure
-from gaspart.reproduction.points.point import compile_task, variant
+from gaspart.reproduction.points.point import compile_task
 from gaspart.errors import SceneError
+
+
+def folder_of_points():
+    return Path(workflow.modifier.modify_path(str(config.get("points"))))
+
 
 # A job on a cluster reads this file again, but need not validate ten thousand points again.
 files = ["config/config.yaml", *workflow.overwrite_configfiles]
@@ -41,6 +69,9 @@ if workflow.is_main_process:
     try:
         files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
         read_numbers(config, files)
+        if kept := keep_efforts(config, folder_of_points()):
+            text = f"{len(kept)} experiments keep the larger effort with which they were made"
+            print(f"{folder_of_points() / EFFORTS}: {text}; delete this file for less", file=sys.stderr)
         POINTS = check(config, files)
         for kept in (workflow.modifier.modify_path("results"), ".snakemake"):
             folder = next(path for path in (kept, *Path(kept).parents) if os.path.exists(path))
@@ -49,15 +80,17 @@ if workflow.is_main_process:
                 raise SceneError("folder", os.path.abspath(folder), problem)
     except SceneError as error:
         # A user's mistake: one line and exit code 2, instead of a WorkflowError with its place in this file.
-        used = Path(str(workflow.main_snakefile)).resolve() != ROOT / "Snakefile"
+        used = Path(str(workflow.main_snakefile)).resolve() != ROOT / "workflow/Snakefile"
         print(f"gaspart: {explain_error(error, config, used)}", file=sys.stderr)
         sys.exit(2)
 else:
     files = [*add_families(config, FOLDER_OF_FAMILIES), *files]
     remove_null(config)
     read_numbers(config, files)
+    keep_efforts(config, folder_of_points())
     POINTS = all_points(config)
 
+EFFORTS_OF_RUNS = sorted({effort_of(config, name) for name in config["experiments"]})
 FIGURES = {name: find(name, block)[0] for name, block in config["figures"].items()}  # family of each
 FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if is_own(block)}
@@ -180,13 +213,11 @@ STATED = registry.modules()
 
 # A digest of the modules of a job, found from its imports, is a parameter of its rule.
 def sources(stage):
-    return [SCRIPTS / "_job.py", SCRIPTS / f"{stage}.py"]
+    return stage_sources(SCRIPTS, stage)
 
 
 def sources_of(point):
-    """The script that does the job of a point, and the modules that it imports by name."""
-    stage = "simulate" if point.job == TRAJECTORIES else "compute"
-    return [*sources(stage), *point.modules]
+    return point_sources(point, SCRIPTS)
 
 
 def module_of(wildcards):
@@ -204,13 +235,12 @@ def measuring_of(wildcards):
 
 
 @cache
-def variant_of(experiment, point):
-    return variant(POINTS[experiment][point])
+def stamp_of_point(experiment, point):
+    return stamp(POINTS[experiment][point], SCRIPTS)
 
 
 def stamp_of(wildcards):
-    point = point_of(wildcards)
-    return f"results/kernels/{kernel_digest(*sources_of(point))}/{variant_of(point.experiment, point.name)}.compiled"
+    return stamp_of_point(wildcards.experiment, wildcards.point)
 
 
 def task_of(wildcards):
@@ -219,7 +249,7 @@ def task_of(wildcards):
     return next(
         compile_task(point)
         for point in of_all
-        if variant_of(point.experiment, point.name) == wildcards.variant
+        if Path(stamp_of_point(point.experiment, point.name)).stem == wildcards.variant
     )
 
 

@@ -100,6 +100,7 @@ rule report:
         own_captions=OWN_CAPTIONS,
         films=FILMS,
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,
     script:
         "../scripts/report.py"
@@ -117,6 +118,7 @@ use rule report as report_in_one_file with:
         own_captions=OWN_CAPTIONS,
         films=FILMS,
         title=lambda wildcards: config["title"],
+        efforts=EFFORTS_OF_RUNS,
         one_file=True,
 
 
@@ -134,4 +136,5 @@ use rule report as report_of_first with:
         own_captions={},
         films={},
         title=lambda wildcards: f"{len(FIRST)} of {len(FIGURES)} figures",
+        efforts=EFFORTS_OF_RUNS,
         one_file=False,

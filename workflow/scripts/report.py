@@ -71,7 +71,9 @@ with job(snakemake):
         )
     of_chapter = page.by_chapter(sections)
     measured = dict(zip(params.figures, given.datasets, strict=True))
-    films = page.films([Path(path) for path in given.films], params.one_file)
+    # All films together are larger than the rest, so that a page in one file has one at most.
+    shown = given.films[: 0 if given.play else 1] if params.one_file else given.films
+    films = {Path(path).stem: page.address(Path(path), params.one_file) for path in shown}
     posters = {Path(path).stem: page.address(Path(path), params.one_file) for path in given.posters}
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader([Path(path).parent for path in (given.template, *given.style)]),
@@ -107,6 +109,7 @@ with job(snakemake):
         findings=page.findings(read_yaml(given.findings), ordered),
         statements=statements,
         headline=page.headline(claims),
+        efforts=[f"{effort:g}" for effort in params.efforts],
         filters={key: Counter(row[key] for row in claims) for key in ("verdict", "kind")},
         states=explore.states(measured),
         engines=explore.choice_of_engine(measured),

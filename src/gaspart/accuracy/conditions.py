@@ -20,9 +20,8 @@ _CERTAIN = 4.0
 
 
 def measured_conditions(scene: Scene, path: Path) -> Conditions:
-    """Measure the local conditions in a run, along the axis with the largest gradient. Only frames after the
-    discarded part are used. Density and temperature both count in the gradient. Raises SceneError for a file
-    that does not store all particles.
+    """Measure the local conditions in a run, along the axis with the largest gradient. Raises SceneError for
+    a file that does not store all particles.
     """
     with open_run(path, None, sheared=True) as run:
         positions = run.positions[:, run.moving]
@@ -57,9 +56,7 @@ def _along(scene: Scene, axis: int, positions: np.ndarray, thermal: np.ndarray) 
 
 
 def require_steady(scene: Scene) -> None:
-    """Raise SceneError if a scene is empty, cools or heats. In a scene without a steady state the observables
-    depend on time.
-    """
+    """Raise SceneError if a scene is empty, cools or heats, so that observables depend on time."""
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     law, loses = scene.restitution, scene.dissipates

@@ -40,9 +40,7 @@ _DOUBT = 0.1
 
 
 def bound(freedom: float) -> float:
-    """Compute the ratio of the upper bound of an error to the error. The ratio is computed from a quantile of
-    the chi-square distribution with the given degrees of freedom.
-    """
+    """Compute the upper bound of an error over the error, by a quantile of chi-square."""
     from scipy.special import chdtri
 
     return 1.0 if math.isinf(freedom) else math.sqrt(freedom / float(chdtri(freedom, 1.0 - _DOUBT)))
@@ -82,8 +80,8 @@ class Component:
         return math.sqrt(self.spectrum / time + self.stored / time**2)
 
     def length(self, accuracy: float) -> float:
-        """Compute the measured time after which the upper bound of the relative error equals `accuracy`. Runs
-        that end at an accuracy (`--until`) use this bound. The result is inf if no time suffices.
+        """Compute the measured time for an upper bound `accuracy` of the relative error, as `--until`; else
+        inf.
         """
         if not self.accuracy < math.inf or not accuracy > 0.0:
             return math.inf
@@ -100,11 +98,9 @@ class Component:
 
 def components(data: xr.Dataset, observable: str, start: float | None = None) -> dict[str, Component]:
     """Estimate each component of an observable of `gaspart measure` from a trajectory. A scalar or a curve
-    has one component, "". For a curve, value and error are root mean squares. Raises the same SceneError as
-    the function of `gaspart.analysis`.
+    has one component, "".
     """
-    from gaspart.analysis.frames import measure_single
-    from gaspart.analysis.run import open_run
+    from gaspart.analysis.run import measure_single, open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:
@@ -132,8 +128,8 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
 
 
 def scales_of(observable: str, values: np.ndarray) -> np.ndarray:
-    """Return the values (n,) to which the relative errors of an observable's components refer. Each refers to
-    its own value, or, if some components vanish on average, to the root mean square of all.
+    """Return the values (n,) for relative errors: its own, or the root mean square if some vanish on
+    average.
     """
     if OBSERVABLES[observable].relative_to == "norm":
         return np.full(len(values), _norm(values))
@@ -188,8 +184,8 @@ def _on_walls(run: Run, observable: str) -> dict[str, Component]:
 
 
 def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, controls: int) -> Component:
-    """Estimate the mean of a series (K,) from its residual after regression on `controls` variables. All
-    intervals have the same length. The stored quantities are among the regressors.
+    """Estimate the mean of equal intervals (K,) from the residual after regression on `controls`
+    variables.
     """
     from gaspart.analysis.statistics import correlated_mean
 
@@ -200,9 +196,8 @@ def without_stores(series: np.ndarray, rest: np.ndarray, interval: float, contro
 
 def _remaining_freedom(series: np.ndarray, rest: Estimate, controls: int) -> float:
     """Return the degrees of freedom of the error of a series (K,) after the regression. The regressors may
-    explain a series up to rounding. For example, the momentum of a single particle explains its impulses on
-    two walls. Then the residual is constant although the series changes. The error is known to be 0, and its
-    degrees of freedom are computed from the changes of the series.
+    explain a series up to rounding. The error is known to be 0, and its degrees of freedom are computed from
+    the changes of the series.
     """
     from gaspart.analysis.statistics import count_changes
 

@@ -55,9 +55,8 @@ class DsmcAdviser(Adviser[DSMC]):
         return tuple(kind(model=model) for model in MODELS)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with its default cells and step, and bounds on its errors. Raises SceneError if
-        the cells or the step are too coarse for the local conditions, or if the gas is too dense for the
-        Enskog model.
+        """Return the engine with default cells and step and bounds on its errors; SceneError if it does not
+        suit.
         """
         conditions, dense = request.conditions, self.engine.model == "enskog"
         filled = float(conditions.filled.max())
@@ -120,10 +119,8 @@ def boltzmann_error(request: AccuracyRequest) -> float:
 
 
 def enskog_error(request: AccuracyRequest, cells: tuple[int, ...] | None = None) -> float:
-    """Bound the relative error of the Enskog equation. In this equation, the centres of a colliding pair are
-    one diameter apart, and the contact value is the value at the local density.
-
-    cells : number of cells along each axis. Default: cells so narrow that they cause no error
+    """Bound the relative error of the Enskog equation. `cells`: number of cells along each axis. Default:
+    cells so narrow that they cause no error.
     """
     conditions = request.conditions
     error = _STATIC + _layers(request)
@@ -159,7 +156,7 @@ def cell_error(engine: DSMC, request: AccuracyRequest) -> float:
 def require_resolved(engine: DSMC, conditions: Conditions) -> None:
     """Raise SceneError if cells or steps are too coarse for an inhomogeneous gas. Cells and steps must not
     exceed the length or time over which the gas changes, the shortest mean free path, or the shortest mean
-    free time. In a homogeneous gas the state does not depend on cells and steps.
+    free time.
     """
     if conditions.axis is None:
         return
@@ -181,9 +178,7 @@ def require_resolved(engine: DSMC, conditions: Conditions) -> None:
 
 
 def cell_widths(engine: DSMC, conditions: Conditions) -> np.ndarray:
-    """Return the side lengths (d,) of a cell, with 0 for an axis without a profile. An axis without a profile
-    has periodic faces and a single cell.
-    """
+    """Return the sides (d,) of a cell, 0 for an axis with periodic faces and a single cell."""
     cells = np.array(cells_of(engine, conditions))
     around = np.array(conditions.scene.container.periodic)
     flat = (cells == 1) & around
@@ -198,9 +193,7 @@ def cells_of(engine: DSMC, conditions: Conditions) -> tuple[int, ...]:
 
 
 def _layers(request: AccuracyRequest) -> float:
-    """Return the relative error of a density due to layers of particles at walls. In these layers, which are
-    about a diameter thick, the density is Z times the density in the middle.
-    """
+    """Return the relative error of a density by layers at walls, a diameter thick, Z times as dense."""
     conditions, scene = request.conditions, request.scene
     if request.observable != "density" or scene.container.periodic[-1]:
         return 0.0

@@ -18,9 +18,7 @@ E = TypeVar("E", bound=Engine)
 
 @dataclass(frozen=True)
 class AccuracyRequest:
-    """Observable of a steady scene, and its requested relative accuracy. The requested accuracy is for the
-    standard error and the bias together.
-    """
+    """Observable of a steady scene, and its requested relative accuracy: standard error and bias together."""
 
     observable: str
     accuracy: float
@@ -71,8 +69,8 @@ class Adviser(Generic[E]):
         return (kind(),)
 
     def candidate(self, request: AccuracyRequest) -> Candidate:
-        """Return the engine with settings for a requested accuracy, and bounds on its errors. Raises
-        SceneError if the engine is not suitable.
+        """Return the engine with settings for a requested accuracy and error bounds; SceneError if
+        unsuitable.
         """
         return Candidate(self.engine)
 
@@ -86,9 +84,8 @@ class Adviser(Generic[E]):
         return 0.0
 
     def at_step(self, scene: Scene, step: float, precision: str) -> E:
-        """Return the engine with the settings of a row of the table of costs.
-
-        step : time step in the unit of the table of costs
+        """Return the engine with the settings of a row of the table of costs, at `step` in the
+        table's unit.
         """
         return self.engine
 
@@ -102,8 +99,5 @@ class Adviser(Generic[E]):
         return f"{self.engine.name}, {self.engine.precision}"
 
     def notes(self, scene: Scene, observable: str, paths: bool) -> dict[str, str]:
-        """Return remarks about the engine for a plan, by title.
-
-        paths : True if the observable depends on the paths of particles
-        """
+        """Return remarks about the engine for a plan, by title; `paths`: for an observable of paths."""
         return {"boxes": self.pairs}

@@ -22,7 +22,7 @@ from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.recipe import MOST_REPLICAS
@@ -88,8 +88,8 @@ class Option:
         return self.whole(self._length(accuracy)) * self.speed
 
     def whole(self, measured: float) -> float:
-        """Compute the duration of a run from the duration of its measured part. By default a quarter of the
-        run is discarded, and at least the time `settling`.
+        """Compute the duration of a run from its measured part: a quarter, at least `settling`, is
+        discarded.
         """
         return max(measured + self.settling, measured / (1.0 - self.discarded))
 
@@ -111,12 +111,9 @@ def fluid_option(
     value: float = 1.0,
     discarded: float = EQUILIBRATION,
 ) -> Option:
-    """Return the option of an engine for a fluid, by the cost of a contact.
-
-    each : CPU time per contact.
-    noise : relative variance of the observable times the number of contacts.
-    value : value of the observable.
-    discarded : minimum fraction of a run before the measurement begins.
+    """Return the option of an engine for a fluid, by the cost of a contact. `each`: CPU time per contact.
+    `noise`: relative variance of the observable times the number of contacts. `value`: value of the
+    observable. `discarded`: minimum fraction of a run before the measurement begins.
     """
     frequency = float(theory.collision_rate(**gas.parameters))
     contacts = 0.5 * gas.count * frequency  # per time
@@ -128,9 +125,7 @@ def fluid_option(
 
 
 def sort_by_cost(options: list[Option]) -> list[Option]:
-    """Sort options: first accurate options by cost, then the others by accuracy. The exact engine comes first
-    unless another engine is cheaper by a factor of at least `WORTH`.
-    """
+    """Sort accurate options by cost, the others by accuracy; the exact engine first unless `WORTH` dearer."""
 
     def key(option: Option) -> tuple[float, float]:
         seconds = option.seconds * (1.0 if option.engine.reference else WORTH)
@@ -158,9 +153,7 @@ def replicas_of(option: Option, longest: float) -> int:
 
 
 def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
-    """Return the engines that can simulate a scene and an observable, the exact engine first. Also return the
-    reason for each rejected engine, under the engine's name in the table.
-    """
+    """Return the engines for a scene and an observable, the exact one first, and reasons for the others."""
     suitable, refused = [], {}
     for engine in candidate_engines():
         try:
@@ -175,10 +168,9 @@ def suitable_engines(target: Target) -> tuple[list[Engine], dict[str, str]]:
 def candidates(
     target: Target, accuracy: float, conditions: Conditions
 ) -> tuple[list[Candidate], dict[str, str]]:
-    """Return the `suitable_engines` with their settings, and the reason for each rejected engine.
-
-    accuracy : requested accuracy of the observable, from which time steps are chosen.
-    conditions : local conditions of the steady scene.
+    """Return the `suitable_engines` with their settings, and the reason for each rejected engine. `accuracy`:
+    requested accuracy of the observable, from which time steps are chosen. `conditions`: local conditions of
+    the steady scene.
     """
     engines, refused = suitable_engines(target)
     request, proposals = make_request(target, accuracy, conditions), []
@@ -199,9 +191,7 @@ def make_request(target: Target, accuracy: float, conditions: Conditions) -> Acc
 
 
 def depends_on_transport(scene: Scene, observable: str) -> bool:
-    """Return True if an observable depends on transport coefficients. This is true for observables with lags,
-    and for all observables if the scene drives a flow of heat or momentum.
-    """
+    """Return True if an observable has lags, or the scene drives a flow of heat or momentum."""
     lost = scene.dissipates
     flows = len(scene.face_temperatures) > 1 or lost or bool(scene.sliding_faces)
     return OBSERVABLES[observable].memory or flows

@@ -107,9 +107,7 @@ class Pilot:
 
     @property
     def main(self) -> str:
-        """Name of the largest component in units of its scale, and of these the least accurate one. If
-        symmetry makes some components of a vector vanish, it is another one.
-        """
+        """Name of the largest component in units of its scale, and of these the least accurate one."""
         sizes = {
             name: (abs(part.value) / part.scale if part.scale > 0.0 else 0.0, part.accuracy)
             for name, part in self.components.items()
@@ -128,9 +126,7 @@ class Pilot:
 
 
 def speed_of(target: Target, engine: Engine) -> float:
-    """Measure the CPU seconds that an engine needs per unit of simulated time. Once the kernels are compiled,
-    this takes a fraction of a second. Raises SceneError if the engine cannot simulate the scene.
-    """
+    """Measure CPU seconds per unit of simulated time; SceneError if the engine cannot simulate the scene."""
     if target.correlated:  # sampling takes longer than the simulation between samples
         return _speed_of_sampling(target, engine)
     tallies = target.tallies(engine)
@@ -167,9 +163,7 @@ def _make(
     scheduled: tuple[float, float, Correlations | None],
     displacements: bool = True,
 ) -> Path:
-    """Run a target with a schedule: duration, time between frames, and correlations. Pilots store
-    `displacements` because other observables need them too.
-    """
+    """Run a target with a schedule; it stores `displacements`, which other observables need too."""
     duration, interval, correlations = scheduled
     recipe = Recipe(
         target.scene, engine, SEED, duration, interval, initial=target.start, correlations=correlations,
@@ -179,9 +173,7 @@ def _make(
 
 
 def require_defined(target: Target) -> None:
-    """Raise SceneError for an observable that is undefined in a scene for runs of any length. The test is a
-    measurement in a very short run.
-    """
+    """Raise SceneError, by a very short run, for an observable that is undefined for any run of a scene."""
     if target.correlated:  # the engines state these requirements
         return
     interval = _BRIEF * target.crossing / _TRIED
@@ -192,9 +184,7 @@ def require_defined(target: Target) -> None:
 
 
 def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | str:
-    """Return the components of an observable, or the reason why the run is too short. Raises SceneError if
-    the observable is undefined in the scene.
-    """
+    """Return the components, or why the run is too short; SceneError if the observable is undefined."""
     try:
         estimates = components(trajectory, target.observable)
     except SceneError as error:
@@ -206,12 +196,9 @@ def _estimate(trajectory: xr.Dataset, target: Target) -> dict[str, Component] | 
 
 
 def run_pilot(target: Target, engine: Engine, seconds: float, speed: float, fraction: float = 1.0) -> Pilot:
-    """Run a pilot of about the given CPU time, and measure the observable.
-
-    speed : result of `speed_of`.
-    fraction : fraction of the CPU time that remains after preparation, unless a stored pilot is reused.
-
-    A pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
+    """Run a pilot of about the given CPU time, and measure the observable. `speed`: result of `speed_of`.
+    `fraction`: fraction of the CPU time that remains after preparation, unless a stored pilot is reused. A
+    pilot in a transient is extended to at most four times its length. If the observable needs a longer run,
     the pilot has no measured value. Raises SceneError if the observable is undefined in the scene.
     """
     scheduled = target.schedule(engine, fraction * seconds / speed)
@@ -245,9 +232,7 @@ def _worst(estimates: dict[str, Component]) -> Component:
 
 
 def _equilibrate(path: Path) -> float:
-    """Return the `settling_time` of a pilot, after extending the pilot until it is steady. The pilot is
-    steady if the settling time lies within the discarded part.
-    """
+    """Return the `settling_time` of a pilot, extended until it lies within the discarded part."""
     for last in (False,) * _CONTINUED + (True,):
         with open_trajectory(path) as trajectory:
             settled, end = settling_time(trajectory), float(trajectory["time"][-1])
@@ -282,9 +267,7 @@ def _settled_at(series: np.ndarray) -> int:
 
 
 def _digest(target: Target, engine: Engine, seconds: float) -> str:
-    """Return a hash that identifies the content of a pilot. All observables that need the same stored data
-    have the same hash, so they share pilots.
-    """
+    """Return a hash of a pilot's content, shared by observables that need the same stored data."""
     kind = "motion" if target.correlated else target.declared.samples
     if target.declared.needs in KEPT:
         kind = target.declared.needs
@@ -391,8 +374,8 @@ class Trials:
         return any(pilot.engine == engine for pilot in self.pilots)
 
     def bias(self, candidate: Candidate) -> float:
-        """Return the bound on a candidate's bias, from theory or from its pilot. The bound from the pilot is
-        its difference from the pilot of the exact engine.
+        """Return the bound on a candidate's bias, from theory or its pilot's difference from the
+        exact one.
         """
         own = [pilot for pilot in self.known if pilot.engine == candidate.engine]
         return raised_bias(candidate, own[0], self.known) if own else candidate.bias
@@ -412,8 +395,8 @@ class Trials:
 
     @property
     def reference(self) -> Pilot:
-        """Longest pilot of a sufficiently accurate engine, otherwise of any engine. Raises SceneError if no
-        pilot measured the observable.
+        """Longest pilot of an accurate engine, otherwise of any; SceneError if none measured the
+        observable.
         """
         accurate = [pilot for pilot in self.known if self._is_accurate(pilot)] or self.known
         if accurate:
@@ -425,9 +408,8 @@ class Trials:
         raise SceneError("observable", target.observable, rule)
 
     def noise(self, engine: Engine) -> Component:
-        """Return the noise of the observable in a run with an engine. If the engine stores impulses, the
-        noise comes from a pilot with impulses, otherwise from a pilot that counts contacts. Raises SceneError
-        if no pilot measured the observable.
+        """Return the noise of the observable in a run with an engine. It comes from a pilot with impulses if
+        the engine stores them.
         """
         with_impulses = [pilot for pilot in self.known if pilot.counted]
         if with_impulses and self.target.tallies(engine):

@@ -25,7 +25,7 @@ from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.keys.values import number
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
@@ -102,8 +102,8 @@ class Plan:
 
     @property
     def finite_size(self) -> tuple[float, float]:
-        """Relative difference from an infinite gas, to first order, and a sufficient number of particles. For
-        this number of particles the difference is a quarter of the accuracy.
+        """Relative difference from an infinite gas, and the number of particles that makes it a quarter of
+        the accuracy.
         """
         gas = known.fluid_of(self.target.scene)
         differing, power = getattr(bulk, f"finite_{self.target.declared.bulk}")(gas)
@@ -188,20 +188,15 @@ def plan(
     announce: Announce = lambda text: None,
 ) -> Plan:
     """Find the cheapest run that measures an observable of `gaspart measure` to a relative accuracy. The
-    observable may name one wall, such as `pressure:x low`.
-
-    accuracy : relative accuracy: the standard error plus the bound on systematic errors, divided by the
-        value. A run with `--until` requires this accuracy of its standard error alone.
-    budget : CPU time of the run in seconds. If it does not suffice, the plan is the most accurate run within
-        it.
-    pilot_seconds : total CPU time of the pilots, for scenes and observables that the table does not cover.
-        Most scenes need two pilots. If the preparation takes more than 5 s, for example to compress
-        particles, it may use up to half of this time. The pilots take longer if a third engine turns out to
-        be the best, or if a pilot in a transient is extended.
-    announce : function that is called with a text before each pilot.
-
-    Raises SceneError if the scene has no steady state, if the observable is undefined in the scene, or if the
-    pilots are too short for the observable.
+    observable may name one wall, such as `pressure:x low`. `accuracy`: relative accuracy: the standard error
+    plus the bound on systematic errors, divided by the value. A run with `--until` requires this accuracy of
+    its standard error alone. `budget`: CPU time of the run in seconds. If it does not suffice, the plan is
+    the most accurate run within it. `pilot_seconds`: total CPU time of the pilots, for scenes and observables
+    that the table does not cover. Most scenes need two pilots. If the preparation takes more than 5 s, for
+    example to compress particles, it may use up to half of this time. The pilots take longer if a third
+    engine turns out to be the best, or if a pilot in a transient is extended. `announce`: function that is
+    called with a text before each pilot. Raises SceneError if the scene has no steady state, if the
+    observable is undefined in the scene, or if the pilots are too short for the observable.
     """
     if known.is_tabulated(scene, observable):
         return plan_from_table(scene, observable, accuracy, budget)
@@ -214,8 +209,8 @@ def plan_from_table(
     accuracy: float,
     budget: float | None = None,
 ) -> Plan:
-    """Make a `plan` from the table; its CPU times are for the machine of the table. Raises SceneError if the
-    table does not cover the scene or the observable.
+    """Make a `plan` from the table, with its machine's CPU times; SceneError if it does not cover
+    the target.
     """
     gas, target = known.tabulated_target(scene, observable)
     accuracy, budget = _check_arguments(accuracy, budget)
@@ -274,9 +269,7 @@ def _check_arguments(accuracy: float, budget: float | None) -> tuple[float, floa
 
 
 def _options(trials: Trials, budget: float | None) -> list[Option]:
-    """Return an option for each candidate, the best first. Raises SceneError if no pilot measured the
-    observable.
-    """
+    """Return an option for each candidate, the best first; SceneError if no pilot measured the observable."""
     target, longest = trials.target, trials.reference
     assert longest.component is not None
     options = []
@@ -293,8 +286,7 @@ def _options(trials: Trials, budget: float | None) -> list[Option]:
 
 def _can_share(target: Target, engine: Engine) -> bool:
     """Return True if the measured time can be divided among replicas. This requires runs that end when they
-    are accurate and that differ in their seeds. For other runs the error of the mean would have to come from
-    the scatter of a few replicas.
+    are accurate and that differ in their seeds.
     """
     return target.declared.ends_runs and differ(target.scene, engine)
 

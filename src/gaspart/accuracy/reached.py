@@ -93,16 +93,14 @@ class AccuracyStatus:
 
     @property
     def of_starts(self) -> float:
-        """Relative standard error of the mean of replicas due to their initial energies. The error is 0 for a
-        single run, because its interval refers to its own energy.
+        """Relative standard error of replicas' mean by initial energies; 0 for a single run, at its own
+        energy.
         """
         return self.scatter / math.sqrt(self.replicas) if self.replicas > 1 else 0.0
 
     @property
     def error(self) -> float:
-        """Standard error of the value. For replicas it includes the scatter of the starts. For a single run
-        it is the error at the energy of the run.
-        """
+        """Standard error of the value, at a single run's energy or with the scatter of replicas' starts."""
         return math.hypot(self.noise, self.of_starts * self.value) if self.of_starts else self.noise
 
     @property
@@ -158,9 +156,7 @@ def _student(freedom: float) -> float:
 
 
 def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Estimate:
-    """Return an estimate with the larger error of two examinations. At the earlier examination the measured
-    part was shorter by the factor `ratio`.
-    """
+    """Return an estimate with the larger error of two examinations, the earlier shorter by `ratio`."""
     from gaspart.analysis.estimate import Estimate
 
     if before is None:
@@ -169,10 +165,7 @@ def confirm_estimate(now: Estimate, before: Estimate | None, ratio: float) -> Es
 
 
 def combine_replicas(estimates: Sequence[Estimate]) -> Estimate:
-    """Average independent estimates, and compute the error of the mean from their errors.
-    `gaspart.analysis.replicas` uses the same formula, because the scatter of a few replicas is a poor
-    estimate.
-    """
+    """Average independent estimates with the error of the mean from theirs, as `analysis.replicas`."""
     first, *others = estimates
     return sum(others, first) / len(estimates) if others else first
 
@@ -213,9 +206,7 @@ def reached_accuracy(path: str | Path) -> list[AccuracyStatus]:
 
 
 class Examiner:
-    """Examination of a run, or of all replicas; `report` receives the result. The last examination is stored,
-    because its frames cannot change any more.
-    """
+    """Examination of a run, or of all replicas, that reports its stored last result to `report`."""
 
     def __init__(self, report: Callable[[list[AccuracyStatus]], None] | None = None) -> None:
         self._report = report
@@ -314,8 +305,8 @@ def _is_idle(reached: list[AccuracyStatus], collisions: float) -> bool:
 
 
 def _measure(runs: Sequence[xr.Dataset], requirement: Requirement) -> _Estimates:
-    """Measure each component of an observable as the mean over runs, with its scale. The component is "" for
-    a scalar. Pressures are restricted to the requested face.
+    """Measure each component ("" for a scalar) as the mean over runs, on the requested face, with
+    its scale.
     """
     observable = requirement.observable
     results = [components(data, observable, requirement.start) for data in runs]

@@ -63,25 +63,23 @@ class Scales:
 
     @property
     def event_time(self) -> float:
-        """Time between collisions, or the time to cross the container; infinite if nothing moves. The
-        crossing time is used if there are no collisions, and for a `free_molecular` gas with walls.
+        """Time between collisions, or to cross the container without any or in a `free_molecular` gas; or
+        inf.
         """
         collides = math.isfinite(self.collision_time) and not self.free_molecular
         return self.collision_time if collides else self.crossing_time
 
     @property
     def interval(self) -> float | None:
-        """Suggested time between frames, rounded to two digits; None if nothing moves. The suggested time is
-        `event_time`, or longer if the suggested duration would otherwise have more than 1000 frames.
-        """
+        """Suggested time between frames, two digits, at most 1000 frames; None if nothing moves."""
         if not math.isfinite(self.event_time):
             return None
         return two_digits(min(max(self.event_time, self._longest / _FRAMES), 0.1 * self.end))
 
     @property
     def duration(self) -> float | None:
-        """Suggested duration, a multiple of the interval. The duration is 200 collisions of a particle and at
-        least ten crossings; for a `free_molecular` gas it is 200 crossings.
+        """Suggested duration in intervals: 200 collisions and ten crossings, or 200 crossings if
+        `free_molecular`.
         """
         if self.interval is None:
             return None
@@ -154,9 +152,7 @@ def _fallen(scene: Scene) -> tuple[float, float] | None:
 
 
 def scales(scene: Scene) -> Scales:
-    """Compute the scales of a scene. For a gas without further features the collision rate follows from
-    theory, otherwise from the rates of all pairs of kinds.
-    """
+    """Compute the scales of a scene, with rates by theory for a plain gas, else by pairs of kinds."""
     d, gas_rates = scene.dimension, rates(scene, True, _few_kinds(scene))
     thermal = gas_rates.speed / math.sqrt(MEAN_SQUARE[d])
     side = min(scene.container.lengths)
@@ -177,9 +173,7 @@ def scales(scene: Scene) -> Scales:
 
 
 def _few_kinds(scene: Scene) -> list[Species | Particle]:
-    """Return the kinds of particles that move; if there are many, a few representatives. A representative has
-    the mean volume, mass and energy of the kinds that it replaces.
-    """
+    """Return the moving kinds; if many, representatives of their mean volume, mass and energy."""
     kinds, d = list(scene.moving_kinds), scene.dimension
     if len(kinds) <= _KINDS:
         return kinds
@@ -191,9 +185,7 @@ def _few_kinds(scene: Scene) -> list[Species | Particle]:
 
 
 def collision_frequency(scene: Scene) -> float:
-    """Compute the collisions per time of a particle of a plain gas from theory. The frequency is 0 if theory
-    does not cover the gas.
-    """
+    """Compute the collision rate of a plain gas from theory; 0 if theory does not cover it."""
     gas = scene.gas
     if gas is None or gas.count < 2 or not gas.temperature > 0.0:
         return 0.0

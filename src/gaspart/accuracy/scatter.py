@@ -56,9 +56,7 @@ class Scatter:
 
 
 def scatter_of_run(run: xr.Dataset, observable: str, face: str | None = None) -> Scatter:
-    """Compute the scatter of an observable between a run and runs with other seeds. Runs that start from the
-    same state have the same energy, so their scatter is 0.
-    """
+    """Compute the scatter between runs of other seeds; 0 for runs from the same state, with one energy."""
     if GIVEN_START in run.attrs:
         return Scatter()
     return start_scatter(Target(Scene.from_dict(parse_yaml(run.attrs["scene"])), observable, face))
@@ -84,9 +82,7 @@ def _of_velocities(scene: Scene) -> float:
 
 
 def _of_places(scene: Scene) -> float:
-    """Compute the standard deviation of the initial potential energy. The standard deviation for independent
-    uniform positions is reduced by a factor for the excluded volume.
-    """
+    """Compute the standard deviation of the initial potential energy, reduced for excluded volume."""
     kinds = [kind for kind in scene.species if kind.count and kind.arrangement == "random" and not kind.fixed]
     square = 0.0
     for axis, pull in enumerate(scene.gravity or ()):
@@ -105,9 +101,7 @@ def _range(scene: Scene, kind: Species, axis: int) -> float:
 
 
 def _compressibility(scene: Scene, kinds: list[Species]) -> float:
-    """Return the factor by which excluded volume reduces the scatter of positions. This factor is the reduced
-    compressibility of the fluid.
-    """
+    """Return the reduced compressibility, by which excluded volume reduces the scatter of positions."""
     d = scene.dimension
     filled = 0.0
     for kind in kinds:
@@ -127,7 +121,7 @@ def _of_observable(target: Target, deviation: float) -> float:
         if target.observable == "pressure":
             return 0.0  # the pressure equals the load
         mean += (piston.pressure or 0.0) * scene.container.volume
-        power = max(power, _STRATIFIED)
+        power = max(power, _STRATIFIED, _at_piston(scene) if target.observable == "density" else 0.0)
     if not scene.gravity:
         return power * deviation / mean if mean else 0.0
     temperature = kinetic_temperature(scene, target.initial)
@@ -139,10 +133,19 @@ def _of_observable(target: Target, deviation: float) -> float:
     return max(power, _STRATIFIED) * deviation / heat if heat else math.inf
 
 
-def _of_column(target: Target, deviation: float) -> float | None:
-    """Compute the standard deviation of an observable under gravity from hydrostatics. Return None if theory
-    does not cover the column.
+def _at_piston(scene: Scene) -> float:
+    """Return the change of the density near a piston, divided by the mean density and the change of energy.
+
+    The height h is proportional to the enthalpy, and fluctuates by h / sqrt(gamma N) at constant enthalpy
+    (points; gamma = 1 + 2 / d). So the density falls from its mean by at most sqrt(gamma N / 2 pi) / h per
+    length, where half of it is left. This half falls as 1 / h.
     """
+    gamma = 1.0 + 2.0 / scene.dimension
+    return math.sqrt(gamma * scene.count / (2.0 * math.pi)) - 0.5
+
+
+def _of_column(target: Target, deviation: float) -> float | None:
+    """Compute the standard deviation of an observable under gravity from hydrostatics, or None."""
     column = gravity_column(target.scene)
     assert column is not None
     energy = column.energy_of(target.initial)

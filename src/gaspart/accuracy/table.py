@@ -79,9 +79,9 @@ def has_biases(engine: str) -> bool:
 def bias(
     dimension: int, fraction: float, precision: str, step: float, observable: str, engine: str = "step"
 ) -> float:
-    """Return a bound on the relative error of an engine, with two standard errors. The default engine is the
-    time-stepped engine. The bound is inf if no error was measured. Between two packing fractions of the table
-    the larger error of the two is used, because errors may change sign between them.
+    """Return a bound on the relative error of an engine, with two standard errors. The bound is inf if no
+    error was measured. Between two packing fractions of the table the larger error of the two is used,
+    because errors may change sign between them.
     """
     eta, value, error = _curve(dimension, engine, precision, step, f"{_BIAS}{observable}")
     if not eta.size or not eta[0] / _BEYOND <= fraction <= eta[-1] * _BEYOND:
@@ -127,9 +127,7 @@ def noise(dimension: int, fraction: float, observable: str) -> float:
 
 
 def prices(engine: str) -> dict[str, float]:
-    """Return the time per event with each measured feature, divided by the time without it. The figure
-    `price_of_features` measures the features.
-    """
+    """Return the time per event with each feature over that without, as `price_of_features` measures."""
     rows = (row for row in read() if row["engine"] == engine and row["quantity"].startswith(_PRICE))
     return {row["quantity"].removeprefix(_PRICE): row["value"] for row in rows}
 
@@ -182,8 +180,7 @@ class Price:
 
 def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
     """Return the cost factors of an observable of a scene with an engine. The costs were measured in a gas of
-    4000 spheres at a packing fraction of 0.2 (figure `price_of_features`). A feature that the scene does not
-    use costs no time.
+    4000 spheres at a packing fraction of 0.2 (figure `price_of_features`).
     """
     has = {
         "walls": not scene.is_periodic,
@@ -200,9 +197,7 @@ def price_of(scene: Scene, engine: Engine, observable: str) -> Price:
 
 
 def _single(engine: Engine, dimension: int) -> float | None:
-    """Compute the time per contact in single precision divided by the time in double precision. The ratio is
-    for the gas with which the engine is timed; None for an engine that was not timed in both precisions.
-    """
+    """Compute the time per contact in single over double precision, or None if not timed in both."""
     adviser = adviser_of(engine)
     fraction, step = adviser.timed_at
     single, double = (

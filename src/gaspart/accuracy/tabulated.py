@@ -18,8 +18,7 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.facts import plain_gas
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
@@ -54,9 +53,7 @@ For smaller gases pilot runs are made.
 
 
 def fluid_of(scene: Scene) -> Gas:
-    """Return the gas of a scene: a fluid in a periodic container. Raises SceneError if the errors of the
-    scene were not measured.
-    """
+    """Return the periodic fluid of a scene; SceneError if its errors were not measured."""
     if not scene.count:
         raise SceneError("count", 0, "advice is for a gas: the scene is empty")
     gas, container = plain_gas(scene), scene.container
@@ -81,9 +78,7 @@ def fluid_of(scene: Scene) -> Gas:
 
 
 def tabulated_target(scene: Scene, observable: str) -> tuple[Gas, Target]:
-    """Return the gas of a scene, and the target to measure. Raises SceneError if the table does not cover the
-    scene or the observable.
-    """
+    """Return the gas of a scene and the target; SceneError if the table does not cover them."""
     if observable not in observables_with(tabulated=True):
         raise SceneError(
             "observable", observable, f"must be one of {', '.join(observables_with(tabulated=True))}"
@@ -116,9 +111,7 @@ def options_of(target: Target, engines: list[Engine], accuracy: float, budget: f
 
 
 def _option(target: Target, engine: Engine, accuracy: float, budget: float | None, step: float) -> Option:
-    """Return the option of an engine with the settings of a row of the table. `step` has the unit of the
-    table.
-    """
+    """Return the option of an engine with a row of the table, whose unit `step` has."""
     gas = fluid_of(target.scene)
     each = table.seconds(gas.dimension, gas.packing_fraction, timed_as(engine), engine.precision, step)
     noise = table.noise(gas.dimension, gas.packing_fraction, target.observable)
@@ -128,9 +121,7 @@ def _option(target: Target, engine: Engine, accuracy: float, budget: float | Non
 
 
 def _with_bounds(target: Target, engine: Engine, gas: Gas, step: float) -> Candidate:
-    """Return the engine with bounds on its errors, from measurements or from theory. In theory these are the
-    errors of the kinetic equation, and the errors of cells and time steps that the engine computes.
-    """
+    """Return the engine with measured or theoretical bounds on its errors, of equation, cells and steps."""
     observable, row = target.observable, (gas.dimension, gas.packing_fraction)
     if table.has_biases(timed_as(engine)):
         error = table.bias(*row, engine.precision, step, observable, timed_as(engine))

@@ -71,8 +71,8 @@ class Target:
 
     @classmethod
     def from_name(cls, scene: Scene, name: str) -> Target:
-        """Return the target for a name of the command line: `Z`, or `pressure:x low`. Raises SceneError for
-        an unknown name, for an observable that is undefined in the scene, and for a wall that does not exist.
+        """Return the target of a name, `Z` or `pressure:x low`; SceneError if unknown, undefined or without
+        wall.
         """
         observable, colon, face = str(name).partition(":")
         face = wall_of(face)
@@ -132,9 +132,7 @@ class Target:
 
     @cached_property
     def crossing(self) -> float:
-        """Time in which a particle crosses the shortest side of the container. Raises SceneError if nothing
-        moves.
-        """
+        """Time in which a particle crosses the shortest side; SceneError if nothing moves."""
         scene = self.scene
         squares = [
             kind.temperature / kind.mass if kind.temperature else (kind.speed or 0.0) ** 2
@@ -171,8 +169,7 @@ class Target:
 
     def tallies(self, engine: Engine) -> tuple[OptionalTally, ...]:
         """Return the optional tallies with which a run of an engine measures the observable more accurately.
-        The tallies are impulses along the last axis. For pressures on walls across a single axis, the tallies
-        are along this axis.
+        For pressures on walls across a single axis, the tallies are along this axis.
         """
         if not self.declared.by_impulses:
             return ()
@@ -190,8 +187,8 @@ class Target:
 
     @property
     def span(self) -> tuple[float, float]:
-        """Maximum time between frames, and maximum length of a run, that lose no accuracy. For diffusion they
-        follow from the lags of the fit, and from the number of correlated frames.
+        """Maximum time between frames and length of a run that lose no accuracy; for diffusion by
+        its lags.
         """
         if self.declared.samples != "paths" or not self.frequency > 0.0:
             return math.inf, math.inf
@@ -216,9 +213,7 @@ class Target:
         return frames * interval, interval, None
 
     def correlations(self, engine: Engine) -> Correlations:
-        """Return the correlations that the observable needs. Raises SceneError for a scene whose particles do
-        not collide.
-        """
+        """Return the correlations that the observable needs; SceneError for a scene without collisions."""
         lags = self.declared.lags
         if not self.frequency > 0.0:
             raise SceneError("observable", self.observable, "needs particles that collide")

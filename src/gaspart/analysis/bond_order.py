@@ -34,9 +34,8 @@ def _freud() -> ModuleType:
 
 
 def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tuple[Any, np.ndarray]:
-    """Return a freud box and the positions in freud's coordinates. The origin of freud's coordinates is the
-    centre of the box. For discs z = 0. Units of length that do not suit freud's Voronoi diagram are changed
-    by a power of two, which changes no other bit.
+    """Return a freud box and the positions in freud's coordinates. Units of length that do not suit freud's
+    Voronoi diagram are changed by a power of two, which changes no other bit.
     """
     longest = math.frexp(max(map(float, lengths)))[1]  # a power of two
     scale = 2.0 ** (min(max(longest, 0), _WIDEST) - longest)
@@ -49,8 +48,7 @@ def _system(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> tup
 def hexatic(positions: np.ndarray, lengths: Sequence[float] | np.ndarray) -> np.ndarray:
     """Compute the complex hexatic order parameter psi_6 of each disc, shape (N,). The order parameter is the
     mean of exp(6 i theta) over the bonds of a disc to its Voronoi neighbours. |psi_6| is 1 in a triangular
-    lattice. The absolute value of the mean over discs is large only if the bonds of all discs have the same
-    orientation. Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
+    lattice. Halperin and Nelson, Phys. Rev. Lett. 41, 121 (1978).
     """
     system = _system(positions, lengths)
     neighbours = _freud().locality.Voronoi().compute(system).nlist  # not freud's default of 6

@@ -15,10 +15,9 @@ import xarray as xr
 
 from gaspart import analysis
 from gaspart.analysis.drift import Trend, describe, trends
-from gaspart.analysis.frames import measure_single, until_time
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES, observable_name
-from gaspart.analysis.run import Source
+from gaspart.analysis.run import Source, measure_single, until_time
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, short_repr
@@ -179,9 +178,7 @@ def _state_in_frame(frames: dict[str, np.ndarray], time: float) -> bytes:
 
 
 def _state_at(simulation: Simulation, time: float) -> bytes:
-    """Return the state of a simulation at its present time or at an earlier time. To obtain an earlier state,
-    the simulation is run again.
-    """
+    """Return the state of a simulation now, or at an earlier time, for which it is run again."""
     if time < simulation.time:
         simulation = simulation.again()
         simulation.advance(until=time)
@@ -195,9 +192,7 @@ def _bits(*vectors: np.ndarray) -> bytes:
 
 
 def _check_replica(recipe: _Recipe, others: list[_Recipe]) -> None:
-    """Raise SceneError unless a run is a replica of the other runs. Replicas differ from each other only in
-    the seed or in the initial state.
-    """
+    """Raise SceneError unless runs differ only in the seed or in the initial state."""
     for other in others:
         if difference := _difference(recipe.settings, other.settings):
             key, value, second = difference
@@ -226,8 +221,8 @@ def _last_common(recipe: _Recipe, other: _Recipe) -> float | None:
 
 
 def _difference(first: Any, second: Any, key: str = "") -> tuple[str, Any, Any] | None:
-    """Find the first difference between two nested dictionaries: its dotted key and both values. Return None
-    if they are equal.
+    """Find the first difference between nested dictionaries: its dotted key and both values; None if
+    equal.
     """
     if isinstance(first, dict) and isinstance(second, dict):
         pairs = {str(name): (first.get(name), second.get(name)) for name in {**first, **second}}

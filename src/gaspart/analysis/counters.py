@@ -120,9 +120,7 @@ def wall_force(source: Source, start: float | None = None) -> Observable:
 
 @contextmanager
 def _open_walls(source: Source, start: float | None, name: str) -> Iterator[tuple[Run, np.ndarray]]:
-    """Open a run, and find the frames (K + 1,) that bound its K blocks. Raises SceneError if the observable
-    `name`, a property of faces, is undefined.
-    """
+    """Open a run, and find the frames (K + 1,) that bound its K blocks; SceneError if `name` is undefined."""
     with open_run(source, start, sheared=True, varying=True) as run:
         require_defined(name, run.scene)
         blocks = min(_BLOCKS, len(run.time) - 1)
@@ -216,8 +214,8 @@ def _rest_on_floors(run: Run, ends: np.ndarray) -> np.ndarray:
 
 
 def count_at_rest(run: Run) -> int:
-    """Count the particles that rest: their velocity along gravity is 0 in two successive frames. If contacts
-    lose no energy, no particle comes to rest, and only the first two frames are read.
+    """Count the particles whose velocity along gravity is 0 in two successive frames; few frames without
+    loss.
     """
     along = np.flatnonzero(run.scene.gravity or ())
     moving = np.flatnonzero(run.moving)

@@ -23,8 +23,8 @@ _EXPONENT = re.compile(r"\^(?:\((\d*d?)-(\d*d?)\)|d)")
 
 
 def units_in(units: str, dimension: int) -> str:
-    """Replace exponents that depend on the dimension d by numbers. For example, `mass length^(2-d) / time`
-    becomes `mass length^-1 / time` in three dimensions.
+    """Replace exponents with d by numbers: in 3D `mass length^(2-d) / time` becomes `mass length^-1
+    / time`.
     """
 
     def number(match: re.Match[str]) -> str:
@@ -37,8 +37,8 @@ def units_in(units: str, dimension: int) -> str:
 
 
 def powers_of(units: str, dimension: int) -> tuple[int, int, int]:
-    """Return the powers of length, mass and time in the declared units. The numerical value of an observable
-    changes with these powers if the units of length, mass and time change.
+    """Return the powers of length, mass and time in the declared units, by which a value changes
+    with units.
     """
     total = [0, 0, 0]
     above, _, below = units_in(units, dimension).partition(" / ")

@@ -128,9 +128,8 @@ def diffusion_coefficient(
 
 
 def _all_lags(run: Run, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags, in frames, of 6, 12, 24, 48 ... collisions of a particle. The run is divided into
-    `parts` equal parts. The longest lag is at most half of the frames of a part. Raises SceneError under the
-    conditions of `lags_of_slopes`.
+    """Return the lags, in frames, of 6, 12, 24 ... collisions of a particle, up to half of one of `parts`
+    parts.
     """
     return _extend_lags(lags_of_slopes(run, stride, parts), len(run.time) // (stride * parts))
 
@@ -159,9 +158,8 @@ def _rate(run: Run) -> float:
 
 
 def _lags_about(run: Run, lag: float, stride: int, parts: int) -> tuple[int, ...]:
-    """Return the lags one frame shorter and one frame longer than a lag, in frames. Raises SceneError for a
-    lag that is shorter than the time between frames, or longer than half of a part. The run is divided into
-    `parts` equal parts.
+    """Return the lags one frame shorter and longer than a lag; SceneError if they are too short, or longer
+    than half of a part.
     """
     interval = run.interval * stride
     frames = len(run.time[::stride]) // parts
@@ -180,8 +178,8 @@ def require_spheres(run: Run, lasting: np.ndarray) -> None:
 
 
 def linear_lags(rate: float, interval: float) -> tuple[int, int, int]:
-    """Return the lags, in frames, of 6, 12 and 24 collisions of a particle. The slope that gives D lies
-    between the second and the third lag. The first lag serves to test that the slope is constant.
+    """Return the lags, in frames, of 6, 12 (to test that the slope is constant) and 24 collisions of a
+    particle.
     """
     first, middle, last = (math.ceil(k * LINEAR_FROM / rate / interval) for k in (0.5, 1.0, 2.0))
     return first, middle, last
@@ -205,9 +203,8 @@ def lags_of_slopes(run: Run, stride: int = 1, parts: int = 1) -> tuple[int, ...]
 
 
 def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
-    """Return a mask (d,) of the axes along which momentum persists for `lag` frames. The momentum is the
-    total momentum of the moving particles. It persists if it is conserved, or if more than half of it
-    remains, for example with a few obstacles among many particles.
+    """Return a mask (d,) of the axes along which at least half of the total momentum persists for `lag`
+    frames.
     """
     masses = run.masses[run.moving]
     if run.flow_axes:
@@ -220,9 +217,7 @@ def _lasting_momentum(run: Run, lag: int) -> np.ndarray:
 
 
 def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
-    """Compute half of the slopes of the squared displacements between consecutive lags. The shape is (G,
-    stretches, d).
-    """
+    """Compute half of the slopes (G, stretches, d) of the squared displacements between consecutive lags."""
     squares = groups.means(
         lambda paths: np.array(
             [((paths[lag:] - paths[: len(paths) - lag]) ** 2).mean(axis=(0, 1)) for lag in lags]
@@ -233,10 +228,9 @@ def _slopes(groups: Groups, lags: tuple[int, ...]) -> np.ndarray:
 
 def settled_slope(slopes: np.ndarray, sizes: Sequence[int] | None = None) -> tuple[int, np.ndarray | float]:
     """Find the first slope that agrees with the previous one, among slopes at increasing lags. The slopes
-    have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected tail. The tail
-    is 0 if the slope agrees with the previous slope within its error along every axis. `sizes` (G,) are the
-    numbers of particles in the groups. Raises SceneError if the last slopes change by more than a slow tail
-    explains.
+    have the shape (G, K, ...). Returns the index of the slope and an estimate of the neglected tail. `sizes`
+    (G,) are the numbers of particles in the groups. Raises SceneError if the last slopes change by more than
+    a slow tail explains.
     """
     for k in range(1, slopes.shape[1]):
         change, error = means_of(slopes[:, k] - slopes[:, k - 1], sizes)
@@ -301,18 +295,15 @@ def mutual_diffusion(source: Source, start: float | None = None) -> Observable:
 
 
 def _rises(path: np.ndarray, lags: tuple[int, ...]) -> Iterator[np.ndarray]:
-    """Yield the slopes of the squared change of a path between consecutive lags, per frame. Each slope is a
-    series over the time origins at which both lags end within the run.
-    """
+    """Yield the slopes of the squared change of a path between consecutive lags, per frame."""
     for early, late in itertools.pairwise(lags):
         number = len(path) - late
         yield (_squares(path, late) - _squares(path, early)[:number]) / (late - early)
 
 
 def _settled_rise(rises: list[np.ndarray]) -> tuple[int, float]:
-    """Find the first slope that no longer changes. Returns the index of the slope and the estimated size of
-    the neglected tail. The criteria are the same as in `settled_slope`. Raises SceneError if the last slopes
-    change by more than a slow tail explains.
+    """Find the first slope that no longer changes, by the criteria of `settled_slope`; return index
+    and tail.
     """
     for k in range(1, len(rises)):
         changes = rises[k] - rises[k - 1][: len(rises[k])]

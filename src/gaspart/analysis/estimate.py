@@ -192,8 +192,8 @@ def _sum(value: Number, *parts: tuple[Number, Number]) -> Estimate:
 
 
 def _each(function: Callable[..., Any], results: int) -> Callable[..., Any]:
-    """Extend a function of floats to arrays. A single float is not converted to a numpy array, because the
-    results of math and numpy differ in the last bits.
+    """Extend a function of floats to arrays; single floats stay, because math and numpy differ in
+    last bits.
     """
 
     def of_any(*numbers: Number) -> Any:

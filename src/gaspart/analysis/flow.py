@@ -51,9 +51,8 @@ _NUMBERS = 2_000_000  # maximum number of values for all intervals together
 
 
 def sides(run: RunData, times: np.ndarray) -> np.ndarray:
-    """Return the lower and upper ends (S, d, 2) of the container at the given times. The ends are along each
-    axis. The times (S,) lie within the run. A piston is assumed to move uniformly between frames. Raises
-    SceneError if the frames do not contain the position of the piston.
+    """Return the ends (S, d, 2) of the container at times (S,) of the run; pistons move uniformly between
+    frames.
     """
     scene = run.scene
     ends = np.zeros((len(times), run.dimension, 2))
@@ -70,8 +69,8 @@ def sides(run: RunData, times: np.ndarray) -> np.ndarray:
 
 
 def accessible_lengths(run: RunData, times: np.ndarray) -> np.ndarray:
-    """Return the side lengths (S, d) of the box that centres of moving particles can reach. The times have
-    the shape (S,). The radius of the largest moving particles determines the box.
+    """Return the sides (S, d) of the box that centres of the largest moving particles can reach at times
+    (S,).
     """
     lower, upper = run.scene.reach(run.scene.largest_moving_radius)
     margins = np.array(run.scene.container.lengths) - np.subtract(upper, lower)
@@ -101,9 +100,7 @@ def face_areas(run: RunData) -> np.ndarray:
 
 
 def _mean_areas(run: RunData) -> np.ndarray:
-    """Compute the mean area (T - 1, 2d) of each face in each interval, without obstacles. If a face moves,
-    the mean is over evenly spread instants that are not in resonance with the oscillation of the face.
-    """
+    """Compute the mean area (T - 1, 2d) of each face in each interval, without obstacles."""
     intervals = len(run.time) - 1
     number = int(np.clip(_NUMBERS // intervals, *_INSTANTS))
     parts = (np.arange(number) + np.arange(1, number + 1) * _GOLDEN % 1.0) / number
@@ -116,9 +113,8 @@ def per_area(run: RunData, amounts: np.ndarray, tallied: str) -> np.ndarray:
     """Divide the amounts that each face receives per interval by the accessible area. If particles of several
     sizes can reach different areas, the result is a sum over sizes. Each term is the amount that particles of
     one size give, divided by the area that they can reach. The sum is read from the tally with the name
-    `tallied`. If `amounts` has no components, the normal component of the tally is used. In this case the
-    result is NaN for faces whose area changes with time. Raises SceneError if the file does not contain the
-    tally.
+    `tallied`. In this case the result is NaN for faces whose area changes with time. Raises SceneError if the
+    file does not contain the tally.
     """
     areas = face_areas(run)
     fluxes = amounts / areas.reshape(*areas.shape, *[1] * (amounts.ndim - 2))
@@ -148,9 +144,8 @@ def _across(lengths: np.ndarray) -> np.ndarray:
 
 
 def accessible_fraction(run: RunData, radius: float, axis: int, edges: np.ndarray) -> np.ndarray:
-    """Compute the fraction (bins,) of each bin's volume that is accessible to particle centres. The bins lie
-    along `axis`. Fixed particles exclude the rest of the volume for the centres of particles with this
-    radius. The fraction is estimated from `_POINTS` evenly spread points.
+    """Compute the fraction (bins,) of bins along `axis` that fixed particles leave to centres, by `_POINTS`
+    points.
     """
     container, fixed = run.scene.container, ~np.isfinite(run.masses)
     lengths, widths = np.array(container.lengths), np.diff(edges)
@@ -180,9 +175,7 @@ def accessible_fraction(run: RunData, radius: float, axis: int, edges: np.ndarra
 
 @dataclass(frozen=True)
 class Grid:
-    """Equal cells between `lower` (A,) and `upper` (A,). `numbers` (A,) are the numbers of cells along the
-    axes.
-    """
+    """Equal cells between `lower` (A,) and `upper` (A,), `numbers` (A,) along the axes."""
 
     lower: tuple[float, ...]
     upper: tuple[float, ...]
@@ -216,9 +209,8 @@ class Grid:
         return math.prod((high - low) / number for low, high, number in sides)
 
     def cells(self, positions: np.ndarray, inside: bool = False) -> np.ndarray:
-        """Return the cell number of each position (..., A); -1 outside the grid and for NaN. The upper end of
-        the grid belongs to the last cell. If `inside` is True, all positions lie in the grid apart from
-        rounding. Positions outside the grid are then assigned to the nearest cell.
+        """Return the cells of positions (..., A); -1 outside and for NaN, or the nearest if all are
+        `inside`.
         """
         shape = np.shape(positions)[:-1]
         index, outside = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=bool)
@@ -241,14 +233,11 @@ class Grid:
         blocks: np.ndarray | None = None,
         before: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Sum weights, or count particles, in each cell, shape (*numbers).
-
-        cells : cell numbers, from `cells`.
-        weights : array that broadcasts to the shape of `cells`.
-        blocks : block number (T,) of each row of `cells` (T, ...). With block numbers, the result has one set
-            of sums for each block, shape (blocks, *numbers).
-        before : sums over earlier frames, to which the new terms are added. It has the shape of the result.
-            The result is then bitwise identical to a single sum over all frames.
+        """Sum weights, or count particles, in each cell, shape (*numbers). `cells`: cell numbers, from
+        `cells`. `weights`: array that broadcasts to the shape of `cells`. `blocks`: block number (T,) of each
+        row of `cells` (T, ...). With block numbers, the result has one set of sums for each block, shape
+        (blocks, *numbers). `before`: sums over earlier frames, to which the new terms are added. It has the
+        shape of the result. The result is then bitwise identical to a single sum over all frames.
         """
         number = 1 if blocks is None else int(blocks.max(initial=-1)) + 1
         shape = self.numbers if blocks is None else (number, *self.numbers)
@@ -277,8 +266,7 @@ _CROWD = 8  # default number of particles per cell of a changing flow
 @dataclass(frozen=True)
 class Peculiar:
     """Velocities (T, M, d) of the M moving particles relative to the mean motion. `freedom` is the number of
-    degrees of freedom of each velocity component: 1 minus the fraction that belongs to the mean motion. Its
-    shape can be broadcast to (T, M, d).
+    degrees of freedom of each velocity component: 1 minus the fraction that belongs to the mean motion.
     """
 
     velocities: np.ndarray
@@ -296,9 +284,7 @@ class Peculiar:
 
 
 def sum_squares(vectors: np.ndarray) -> np.ndarray:
-    """Sum the squares of the components of vectors (..., d). The components are added one after another,
-    because numpy sums over a short last axis slowly.
-    """
+    """Sum the squares of components of (..., d), one by one: numpy is slow over a short last axis."""
     total = vectors[..., 0] ** 2
     for k in range(1, vectors.shape[-1]):
         total += vectors[..., k] ** 2
@@ -306,16 +292,15 @@ def sum_squares(vectors: np.ndarray) -> np.ndarray:
 
 
 def about_the_whole(run: RunData) -> Peculiar:
-    """Compute velocities relative to the centre of mass in each frame. The velocity of the centre of mass is
-    subtracted only along the axes on which the total momentum is conserved. For a sheared gas, the known flow
-    is also subtracted.
+    """Compute velocities relative to the centre of mass, along conserved axes, and to a known
+    sheared flow.
     """
     return about_the_mean(_about_known(run), run.masses[run.moving], run.conserved)
 
 
 def about_the_mean(velocities: np.ndarray, masses: np.ndarray, axes: np.ndarray) -> Peculiar:
-    """Compute velocities relative to the centre of mass in each frame. Velocities are (T, M, d), masses (M,).
-    The mean is subtracted along the axes of the mask `axes` (d,).
+    """Compute velocities (T, M, d) relative to the centre of mass of masses (M,), along the axes (d,) of a
+    mask.
     """
     total = masses.sum() or 1.0  # no particles: nothing to subtract
     drift = np.einsum("tnd,n->td", velocities, masses) / total
@@ -377,9 +362,8 @@ def _number(run: RunData, axes: list[int], changes: bool) -> int:
 
 
 class FlowCells:
-    """Cells in which the flow velocity is computed. `numbers` maps an axis to its number of cells. For a
-    steady flow, the mass and momentum of the cells are stored. Otherwise the flow changes with time. The flow
-    velocity is then the mass-weighted mean in each cell of each frame.
+    """Cells, `numbers` by axis, of the flow velocity: stored sums if it is steady, else means of
+    each frame.
     """
 
     def __init__(self, run: RunData, numbers: Mapping[int, int]) -> None:
@@ -395,9 +379,8 @@ class FlowCells:
     def sum(
         self, cells: np.ndarray, masses: np.ndarray, velocities: np.ndarray, before: list | None
     ) -> list[np.ndarray]:
-        """Sum mass and momentum in cells. If the flow changes with time, there are sums for each frame, shape
-        (T, C). Otherwise there is one sum over the frames, shape (C,), which is added to the sums of earlier
-        frames.
+        """Sum mass and momentum in cells: (T, C) if the flow changes with time, else (C,), added to earlier
+        sums.
         """
         blocks = np.arange(len(cells)) if before is None else None
         weights = [masses, *(masses * velocities[..., k] for k in range(velocities.shape[-1]))]

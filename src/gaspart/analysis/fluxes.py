@@ -120,22 +120,17 @@ def wall_shear(source: Source, start: float | None = None) -> Observable:
 
 
 def _amounts_per_area(run: Run, name: str, tallied: str) -> np.ndarray:
-    """Return the amount that each face receives per interval and accessible area. The shape is (T - 1, 2d,
-    ...). See `per_area`. Raises SceneError if the frames do not contain the sum `name`.
-    """
+    """Return the amounts (T - 1, 2d, ...) that faces receive per accessible area, as `per_area`."""
     if name not in run.data:
         raise SceneError(name, "missing", "the engine does not tally it, or an older version wrote the file")
     return per_area(run, run.increments(name)[:, : 2 * run.dimension], tallied)
 
 
 def _steady(run: Run, faces: np.ndarray, amounts: np.ndarray, stored: list[np.ndarray]) -> Means:
-    """Compute the time average of the amount that each face receives, and its error, shape (F,).
-
-    amounts : (T - 1, F), amounts in each interval.
-    stored : arrays (T,) of bounded sums over the gas. The average is corrected for their changes in each
-        block.
-
-    Raises SceneError for too few frames and for faces that no particle hit.
+    """Compute the time average of the amount that each face receives, and its error, shape (F,). `amounts`:
+    (T - 1, F), amounts in each interval. `stored`: arrays (T,) of bounded sums over the gas. The average is
+    corrected for their changes in each block. Raises SceneError for too few frames and for faces that no
+    particle hit.
     """
     intervals = len(run.time) - 1
     if intervals < LEAST_INTERVALS:
@@ -167,9 +162,8 @@ def _mean_without_stores(rates: np.ndarray, changes: list[np.ndarray]) -> Estima
 
 
 def _energies(run: Run) -> list[np.ndarray]:
-    """Compute the kinetic energy relative to the mean velocity of the faces, and its first moments. Each
-    result is an array (T,). Only translational energy counts. The moments are taken along the normals of the
-    faces. The result is empty if the file does not contain all particles.
+    """Compute the translational energy (T,) relative to the faces and its first moments along their normals,
+    if all are stored.
     """
     if run.is_subset:
         return []
@@ -178,9 +172,8 @@ def _energies(run: Run) -> list[np.ndarray]:
 
 
 def _momenta(run: Run, axis: int) -> list[np.ndarray]:
-    """Compute the momentum relative to the mean velocity of the faces, and its first moments. Each result is
-    an array (T,). The momentum is the component along `axis`. The moments are taken along the normals of the
-    faces.
+    """Compute the momentum (T,) along `axis` relative to the faces, and its first moments along their
+    normals.
     """
     if run.is_subset:
         return []
@@ -189,9 +182,7 @@ def _momenta(run: Run, axis: int) -> list[np.ndarray]:
 
 
 def _about_faces(run: Run) -> np.ndarray:
-    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces. These relative
-    velocities do not depend on the frame of reference.
-    """
+    """Compute velocities (T, M, d) relative to the mean velocity of the thermal faces."""
     frame = np.zeros(run.dimension)
     for _, face in run.scene.sliding_faces:
         frame += np.array(face.velocity) / len(run.scene.thermal_numbers)
@@ -283,9 +274,7 @@ def particle_flux(
 
 
 def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
-    """Return the net number (T,) of particles that have entered through the upper face. The number is 0 if
-    this face is not open.
-    """
+    """Return the net number (T,) of particles that have entered through the upper face; 0 if it is closed."""
     upper = 2 * axis + 1
     if not isinstance(run.scene.faces.get(FACES[upper]), Open):
         return 0
@@ -296,9 +285,7 @@ def _entered_beyond(run: Run, axis: int) -> np.ndarray | int:
 
 
 def particle_numbers(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Return the number of particles in the container in each frame. This number is the initial number plus
-    the particles that have entered minus the particles that have left.
-    """
+    """Return the number of particles in each frame: the initial ones plus entered minus left."""
     opened = [number for number, _ in scene.faces_of(Open)]
     moved = data["entries"].values.sum(axis=1) - data["wall_hits"].values[:, opened].sum(axis=1)
     return np.asarray(scene.count + moved).astype(np.int64)

@@ -31,9 +31,7 @@ from gaspart.trajectory.run_options import stored_tally
 
 
 def engine_class(run: Run) -> type[Engine]:
-    """Return the class of the engine of a run. If the file does not name the engine, return the base class,
-    which declares no capabilities.
-    """
+    """Return the engine's class; the base, which declares no capabilities, if the file names none."""
     return ENGINES.get(json.loads(run.data.attrs.get("engine", "{}")).get("name"), Engine)
 
 
@@ -111,8 +109,8 @@ class MomentumFlux:
     walled: bool
 
     def numbers(self) -> np.ndarray:
-        """Compute the number of particles in each bin integrated over time, shape (M, bins). In each
-        interval, the sum over the bins is exact: the total number of particles times the duration.
+        """Compute the number of particles in each bin integrated over time (M, bins); sums over bins are
+        exact.
         """
         if self.pull > 0.0:  # start at the lower side, so that no error grows with the density
             below = self.pull * self.count * self.time[:, None]
@@ -141,9 +139,9 @@ class MomentumFlux:
         return content + (total - content.sum(axis=1))[:, None] * shares
 
     def _fallen(self) -> np.ndarray:
-        """Compute the numbers of particles under gravity, which changes the momentum of particles. Gravity
-        gives momentum to all particles below a plane. For the planes of a bin, these are all particles in
-        lower bins and, on average, a fraction of the particles in the bin itself.
+        """Compute the numbers of particles under gravity, which changes the momentum of particles. For the
+        planes of a bin, these are all particles in lower bins and, on average, a fraction of the particles in
+        the bin itself.
         """
         numbers, below = np.empty(self.flux.shape), np.zeros(len(self.flux))
         shares = self.spread / self.width - self.pull * self.above
@@ -154,9 +152,8 @@ class MomentumFlux:
 
 
 def useful_impulses(scene: Scene, tallies: Collection[str], axis: int, bins: int) -> tuple[ImpulseTally, ...]:
-    """Return the impulse tally along an axis; () if it cannot determine the density.
-
-    tallies : names of the tallies that the engine can store
+    """Return the impulse tally along an axis; () if it cannot determine the density. `tallies`: names of the
+    tallies that the engine can store.
     """
     tally = ImpulseTally("xyz"[axis], bins)
     try:
@@ -180,8 +177,8 @@ def read_impulses(data: xr.Dataset) -> ImpulseTally | None:
 
 
 def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> np.ndarray | None:
-    """Compute the number of moving particles in each bin, integrated over each interval. The intervals lie
-    between frames; the shape is (T - 1, bins). Return None if the run has not stored the required data.
+    """Compute the moving particles in each bin, integrated over intervals, (T - 1, bins); None
+    without data.
     """
     has = read_impulses(run.data)
     if has is None or has.axis != "xyz"[axis] or has.bins % bins:
@@ -195,9 +192,7 @@ def numbers_by_impulses(run: Run, axis: int, bins: int, species: int | None) -> 
 
 
 def _momentum_flux(run: Run, axis: int, bins: int, row: int) -> MomentumFlux | None:
-    """Return the momentum flux from row `row` of the tally. Return None if particles of different masses
-    contribute to the row, or if the file does not contain the particles that determine the temperature.
-    """
+    """Return the momentum flux of a row of the tally; None for several masses or an unknown temperature."""
     members = run.species == row
     masses = run.masses[members]
     pull = (run.scene.gravity or (0.0,) * run.dimension)[axis]
@@ -250,8 +245,8 @@ def _spread(run: Run, axis: int, bins: int, members: np.ndarray, cells: Cells) -
 
 
 def _above(run: Run, axis: int, cells: Cells) -> np.ndarray:
-    """Compute the mean distance from a particle to the upper end of its bin, shape (bins,). The distance is
-    divided by the bin width. It is set to one half if no particle was in the bin.
+    """Compute the mean distance (bins,) to the upper end of the bin over its width; one half without
+    particles.
     """
     scale = cells.numbers[0] / run.scene.container.lengths[axis]
     return _mean_in(
@@ -280,9 +275,7 @@ def mixture(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.nda
 
 
 def _weights(counted: np.ndarray, impulses: np.ndarray, periodic: bool) -> np.ndarray:
-    """Compute the weights (bins,) that minimize the variance of the weighted mean over the blocks.
-    Neighbouring bins have a common weight.
-    """
+    """Compute the weights (bins,), common to neighbours, of the weighted mean with the least variance."""
     groups = np.arange(len(counted)) * min(_GROUPS, len(counted)) // len(counted)
     starts = np.flatnonzero(np.diff(groups, prepend=-1))
     sizes = np.diff(np.append(starts, len(counted)))[:, None]
@@ -302,9 +295,7 @@ def _near(values: np.ndarray, reach: int, periodic: bool) -> np.ndarray:
 
 
 def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means | None:
-    """Compute the density along an axis from counts and impulses, for all particles or one species. Return
-    None if the run has not stored the required impulses.
-    """
+    """Compute the density along an axis from counts and impulses; None without stored impulses."""
     frames = len(run.time)
     if run.is_subset and len(run.scene.kinds) > 1:
         return None
@@ -334,17 +325,13 @@ def mixed_density(run: Run, axis: int, bins: int, species: int | None) -> Means 
 
 
 def default_bins(run: Run, axis: int, of: str) -> int:
-    """Return the default number of bins along an axis. For a density, the default is the number of bins of
-    the stored impulses.
-    """
+    """Return the default number of bins along an axis; for a density that of the stored impulses."""
     has = read_impulses(run.data)
     return has.bins if of == "density" and has is not None and has.axis == "xyz"[axis] else USUAL_BINS
 
 
 def described_density(run: Run, axis: int, bins: int, by_impulses: bool) -> dict[str, str]:
-    """Return the attributes that name the data from which a density was estimated. The attributes are defined
-    by `estimator`. If the bins of the stored impulses cannot be used, a note says so.
-    """
+    """Return the attributes that name a density's data (`estimator`), with a note if impulses do not fit."""
     has, tallies = read_impulses(run.data), useful_impulses(run.scene, engine_tallies(run), axis, 200)
     lacks = ""
     if has is not None and has.axis == "xyz"[axis] and has.bins % bins:
@@ -399,9 +386,8 @@ def wall_controls(run: Run, axis: int) -> np.ndarray | None:
 
 
 def stores(run: Run) -> np.ndarray:
-    """Compute the momentum and the sum of m x v along each axis, for moving particles. The shape is (d, T,
-    2), with one value for each frame. The position x is measured from the middle of the container. The shape
-    is (d, T, 0) if the file does not contain all particles.
+    """Compute momentum and sum of m x v, x from the middle, along each axis, (d, T, 2); (d, T, 0) if not all
+    are stored.
     """
     if not run.has_states:
         return np.zeros((run.dimension, len(run.time), 0))
@@ -415,9 +401,7 @@ def stores(run: Run) -> np.ndarray:
 
 
 def group_count(run: Run) -> int:
-    """Return the number of groups of intervals for a regression. The number is 0 if there are too few
-    intervals or particles.
-    """
+    """Return the number of groups of intervals for a regression; 0 if there are too few."""
     if run.moving.sum() < FEWEST:
         return 0
     collided = 2.0 * run.increments("collisions").sum() / max(1, int(run.moving.sum()))

@@ -64,10 +64,7 @@ class Insertions:
 
     @property
     def resolution(self) -> float:
-        """Probability that corresponds to a single free position in all trials. The trials are equivalent to
-        a larger number of random positions in the whole container. The probability is 1 divided by this
-        number.
-        """
+        """Probability of a single free position: 1 over the equivalent trials in the whole container."""
         return float(self.share.mean() / (self.trials * len(self.share)))
 
 
@@ -97,9 +94,8 @@ def insertions(
 def _try(
     groups: list[tuple[np.ndarray, float]], lengths: np.ndarray, number: int, generator: np.random.Generator
 ) -> tuple[float, int]:
-    """Count the free positions among trials in the region that no single particle covers. Returns the volume
-    of this region as a fraction of the container, and the count. `groups` contains positions of particles,
-    each array with its contact distance.
+    """Count the free positions among trials outside of single particles; return also their share of the
+    volume.
     """
     from scipy.spatial import cKDTree
 
@@ -114,9 +110,7 @@ def _try(
 
 
 def _apart(trees: list[tuple[Any, float]], positions: np.ndarray, less: float) -> np.ndarray:
-    """Mark the positions (M, d) that are far enough from all particles. The distance from each particle must
-    exceed the contact distance minus `less`.
-    """
+    """Mark the positions (M, d) farther from all particles than the contact distance minus `less`."""
     is_free = np.ones(len(positions), dtype=bool)
     for tree, distance in trees:
         if distance > less:
@@ -236,9 +230,7 @@ def chemical_potential(source: Source, trials: int = TRIALS, start: float | None
 
 
 def _hosts(run: Run) -> list[Hosts]:
-    """Return the contact distances of an inserted particle of each species. For equal particles the result
-    has a single element.
-    """
+    """Return the contact distances of an inserted particle of each species, or of the only one."""
     radii = [kind.radius for kind in run.scene.kinds if kind.count]
     if run.scene.alike:
         return [[(slice(None), 2.0 * radii[0])]]
@@ -270,9 +262,8 @@ def _insert(run: Run, frames: slice, hosts: Hosts, trials: int) -> tuple[np.ndar
 
 
 def _is_sampled(probability: np.ndarray, error: float) -> bool:
-    """Return True if the frames that contribute most to the mean probability (T,) were sampled.
-
-    error : relative standard error of the mean, including the correlation between frames.
+    """Return True if the frames that contribute most to the mean probability (T,) were sampled. `error`:
+    relative standard error of the mean, including the correlation between frames.
     """
     free = probability[probability > 0.0]
     if error == 0.0:

@@ -110,9 +110,8 @@ def _columns(values: np.ndarray) -> np.ndarray:
 
 
 def _products(columns: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
-    """Compute sums of products of series values that are separated by a time difference t. The products are
-    a(s + t) a(s) or a(s + t) b(s). They are summed over the columns (T, C) and over the times s, for t = 0, 1
-    ... T - 1. The sums for negative t are at the end of the result.
+    """Compute sums over times s and columns of a(s + t) a(s) or a(s + t) b(s), t from 0; negative t at the
+    end.
     """
     from scipy.fft import irfft, next_fast_len, rfft
 
@@ -138,9 +137,8 @@ _PART = 4.0
 
 
 def average_correlations(trajectory: xr.Dataset) -> Curves:
-    """Return the averages of the stored correlations of a run up to its last frame. Lags are in the time unit
-    of the scene. Velocities are not relative to the centre of mass. `msd` and `running` are NaN if the run
-    has not stored displacements.
+    """Return the averages of stored correlations up to the last frame, in the scene's unit of time; NaN if
+    not stored.
     """
     last, dimension = trajectory.isel(frame=-1), trajectory.sizes["spatial"]
     lags = trajectory.sizes["lag"]
@@ -305,9 +303,7 @@ def velocity_autocorrelation(
 def _accumulates(
     run: Run, name: str, lags: int | None, species: int | None, particles: Sequence[int] | None
 ) -> bool:
-    """Return True if a run has accumulated the requested curve (a name in `SUMS`). The curve is used only if
-    the gas does not flow.
-    """
+    """Return True if a run accumulated the curve of `SUMS` and does not flow."""
     covers_all = lags is None and species is None and particles is None
     if not (name in run.data and covers_all and run.about == FLOW):
         return False

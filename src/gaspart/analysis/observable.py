@@ -303,15 +303,11 @@ def label_of(values: xr.DataArray) -> str:
 def scalar(
     name: str, series: np.ndarray, edges: np.ndarray, *, slow: bool = False, **about: Any
 ) -> Observable:
-    """Return the mean of a correlated series over the intervals between frames, with its error.
-
-    series : (M,), the values in the intervals.
-    edges : (M + 1,), the times of the frames.
-    slow : True if correlations may decay as slowly as 1 / t.
-    about : attributes `units` and `long_name`, and optionally `theory` (a value and its uncertainty) and its
-        `source`.
-
-    Raises SceneError for fewer values than `LEAST_INTERVALS`.
+    """Return the mean of a correlated series over the intervals between frames, with its error. `series`:
+    (M,), the values in the intervals. `edges`: (M + 1,), the times of the frames. `slow`: True if
+    correlations may decay as slowly as 1 / t. `about`: attributes `units` and `long_name`, and optionally
+    `theory` (a value and its uncertainty) and its `source`. Raises SceneError for fewer values than
+    `LEAST_INTERVALS`.
     """
     if len(series) < LEAST_INTERVALS:
         raise SceneError("frames", len(series) + 1, f"an error needs {LEAST_INTERVALS + 1} or more")
@@ -338,9 +334,7 @@ def observable(
     theory: tuple[Any, Any] | None = None,
     source: str | None = None,
 ) -> Observable:
-    """Build a result from its parts. `along` maps the name of each dimension to its coordinate and the
-    attributes of the coordinate.
-    """
+    """Build a result from its parts; `along` has each dimension's coordinate and its attributes."""
     dims = tuple(along)
     parts = {name: (values, long_name), f"{name}_error": (errors, "standard uncertainty")}
     if theory is not None:
@@ -355,9 +349,8 @@ def observable(
 
 
 def with_freedom(result: Observable, freedom: np.ndarray | float) -> Observable:
-    """Add the degrees of freedom of the errors to a result, with the suffix _freedom.
-
-    freedom : degrees of freedom of each value, or one number for all values with a known error.
+    """Add the degrees of freedom of the errors to a result, with the suffix _freedom. `freedom`: degrees of
+    freedom of each value, or one number for all values with a known error.
     """
     if not isinstance(freedom, np.ndarray):
         freedom = np.where(np.isnan(result.error), np.nan, freedom)

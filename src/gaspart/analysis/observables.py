@@ -265,9 +265,7 @@ ALIASES: dict[str, str] = {
 
 
 def observable_name(name: object) -> str:
-    """Return the standard name of an observable, from its name or an alias. Raises SceneError for an unknown
-    name.
-    """
+    """Return the standard name of an observable, from its name or an alias; SceneError if unknown."""
     if isinstance(name, str):
         if name in OBSERVABLES:
             return name
@@ -303,9 +301,7 @@ def about(name: str, dimension: int) -> dict[str, str]:
 
 
 def name_of(function: str) -> str:
-    """Return the name of the observable that a function of `gaspart.analysis` measures. If the function
-    measures no named observable, return the name of the function.
-    """
+    """Return the name of the observable that a function measures, or of the function."""
     return next((name for name, declared in OBSERVABLES.items() if declared.function == function), function)
 
 
@@ -319,10 +315,7 @@ def require_selection(name: str, selection: Mapping[str, Any]) -> None:
 
 
 def require_defined(name: str, scene: Scene, **selection: Any) -> None:
-    """Raise SceneError, with the reason, if an observable is undefined for a scene. The condition does not
-    depend on the length of a run. Also raises SceneError for a selection that the observable or the scene
-    does not allow.
-    """
+    """Raise SceneError, with the reason, if an observable or a selection is undefined for a scene."""
     declared = OBSERVABLES[observable_name(name)]
     require_selection(name, selection)
     if not declared.varying:
@@ -332,10 +325,9 @@ def require_defined(name: str, scene: Scene, **selection: Any) -> None:
 
 
 def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int | None = None) -> None:
-    """Raise SceneError if no run of a scene, of any length, can measure an observable.
-
-    kept : names of the stored data, see `require_kept`.
-    follow : number of particles in the file, the argument of `gaspart.run`; None for all.
+    """Raise SceneError if no run of a scene, of any length, can measure an observable. `kept`: names of the
+    stored data, see `require_kept`. `follow`: number of particles in the file, the argument of `gaspart.run`;
+    None for all.
     """
     require_defined(name, scene)
     required = {"mixed": len(scene.kinds) > 1, "unless fluxes": "fluxes" not in kept, "never": False}
@@ -349,10 +341,7 @@ def require_run(name: str, scene: Scene, kept: Collection[str] = (), follow: int
 
 
 def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
-    """Return the walls, such as `x low`, for which an observable may have a value. For a pressure or force
-    these are all walls; for other observables of faces, the faces with a temperature. For all other
-    observables, no walls are returned.
-    """
+    """Return the walls that may have a value: all for pressure or force, else faces with a temperature."""
     if "face" not in OBSERVABLES[name].along:
         return ()
     if OBSERVABLES[name].of_impulses:
@@ -361,9 +350,8 @@ def walls_of(name: str, scene: Scene) -> tuple[str, ...]:
 
 
 def require_steady_value(name: str, scene: Scene) -> None:
-    """Raise SceneError, with the reason, if an observable is 0 on average in the steady state. A relative
-    accuracy of such an observable is undefined. In a container whose open faces all lead to a vacuum, all
-    observables are 0 in the steady state.
+    """Raise SceneError, with the reason, if an observable is 0 on average in the steady state. In a container
+    whose open faces all lead to a vacuum, all observables are 0 in the steady state.
     """
     if scene.is_open and not any(face.temperatures for _, face in scene.faces_of(Open)):
         refuse_open(scene, "has no reservoir: all particles leave, and nothing is steady; give a duration")
@@ -372,10 +360,7 @@ def require_steady_value(name: str, scene: Scene) -> None:
 
 
 def require_modelled(name: str, scene: Scene, engine: Engine) -> None:
-    """Raise SceneError, with the reason, if runs of an engine do not determine an observable. This is the
-    case if the equation of the engine does not determine the observable or gives a trivial value, or if the
-    engine does not store the required data.
-    """
+    """Raise SceneError, with the reason, if runs of an engine do not determine an observable or its data."""
     declared = OBSERVABLES[observable_name(name)]
     if engine.equation in declared.nothing:
         raise SceneError("observable", name, declared.nothing[engine.equation])

@@ -38,9 +38,7 @@ _MOST_BOXES = 4
 def pair_counts(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> np.ndarray:
-    """Count the pairs of all frames in equal intervals of the distance. Distances are to the nearest image,
-    in double precision.
-    """
+    """Count the pairs of all frames in equal intervals of the distance to the nearest image, in float64."""
     from gaspart.kernels.analysis.pairs import MARGIN, count_pairs  # importing numba takes 0.4 s
 
     sides = np.asarray(lengths, dtype=float)
@@ -82,8 +80,8 @@ def _boxes(size: np.ndarray, count: int, furthest: float, first: int) -> np.ndar
 def radial_distribution(
     frames: np.ndarray, lengths: Sequence[float] | np.ndarray, bins: int, furthest: float, threads: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute g(r), averaged over frames (T, N, d), at the centres of shells. Returns the centres (bins,) and
-    g(r) (bins,). The counts are divided by the counts for an ideal gas with N (N - 1) / 2 pairs.
+    """Compute centres (bins,) of shells and g(r) of frames (T, N, d), over N (N - 1) / 2 pairs of an ideal
+    gas.
     """
     count = np.shape(frames)[1]
     counts = pair_counts(frames, lengths, bins, furthest, threads)
@@ -112,9 +110,7 @@ _ALIKE = 1e-9
 
 
 def read_pair_impulses(run: Run) -> PairImpulseTally | None:
-    """Return the stored pair impulses of a run, or None. None is also returned if the file does not contain
-    all particles, because the temperature is then unknown.
-    """
+    """Return the stored pair impulses of a run; None without them or without a known temperature."""
     return None if run.is_subset else stored_tally(run.data.attrs, PairImpulseTally)
 
 
@@ -147,9 +143,7 @@ def g_by_impulses(run: Run, starts: np.ndarray, bins: int, furthest: float) -> n
 
 
 def mixed_g(counted: np.ndarray, parts: np.ndarray, volumes: np.ndarray) -> np.ndarray:
-    """Compute g(r) (S, bins) in S blocks from counts (S, bins) and impulses (2, S, bins). `volumes` (bins,)
-    are the volumes of the shells.
-    """
+    """Compute g(r) (S, bins) from counts (S, bins) and impulses (2, S, bins); `volumes` (bins,) of shells."""
     contacts, total = parts[0].mean(axis=0), parts.sum(axis=0)
     missing = ((counted - total) @ volumes) / (contacts @ volumes)
     impulses = total + missing[:, None] * contacts
@@ -324,8 +318,8 @@ def contact_values(source: Source, start: float | None = None) -> Observable:
 
 
 def rate_scales(run: Run) -> np.ndarray:
-    """Compute the number of collisions of each pair of species per collision of one particle. The particle
-    belongs to the first species of the pair.
+    """Compute collisions of each pair of species per collision of one particle of the pair's first
+    species.
     """
     counts = [kind.count for kind in run.scene.species]
     pairs = pairs_of(run.scene)

@@ -165,9 +165,8 @@ def _about_flow(run: Run, paths: bool, stride: int) -> np.ndarray:
 
 
 def _group_numbers(species: np.ndarray) -> np.ndarray:
-    """Return the group number of each particle, from its species (M,). All groups of a mixture have the same
-    composition. Otherwise differences between species would contribute to the scatter between groups, and
-    longer runs would not reduce this contribution.
+    """Return the group of each particle: groups of equal composition, whose scatter decreases with longer
+    runs.
     """
     if np.ptp(species) == 0:
         return np.repeat(np.arange(GROUPS), [len(part) for part in np.array_split(species, GROUPS)])
@@ -177,9 +176,7 @@ def _group_numbers(species: np.ndarray) -> np.ndarray:
 
 
 def stride_of(run: Run, count: int = GROUPS) -> int:
-    """Return the stride between the frames that are used. The stride depends on the number of particles,
-    because for fewer than `GROUPS` particles each group is a block of the run.
-    """
+    """Return the stride between frames, by the number of particles; few have blocks of the run as groups."""
     return -(-len(run.time) // (MOST_FRAMES * (GROUPS if count < GROUPS else 1)))
 
 

@@ -115,10 +115,7 @@ class Cells:
         return not any(self._values(part.velocities).any() for _, part in self.run.parts())
 
     def sums(self, weigh: Callable[[Run, np.ndarray], Sequence[np.ndarray | None]]) -> list[np.ndarray]:
-        """Sum weights in each cell over the frames of each block. The frames are read in parts. `weigh` is
-        called with a part and the cell numbers of its particles. It returns arrays of weights (T, n), or None
-        to count particles. Each sum has shape (K, *cells).
-        """
+        """Sum (K, *cells) what `weigh(part, cells)` returns, weights (T, n) or None to count, over blocks."""
         shape = int(self.blocks[-1]) + 1, *self.numbers
         sums: list[np.ndarray] = []
         for frames, part in self.run.parts():
@@ -177,10 +174,7 @@ class Cells:
         return Means(*(np.stack([getattr(part, name) for part in parts]) for name in vars(parts[0])))
 
     def temperature(self, local: bool) -> Means:
-        """Compute k_B T: twice the kinetic energy per degree of freedom, relative to the mean motion. If
-        `local` is True, velocities are always relative to the flow in these cells. Otherwise they are
-        relative to a local flow only if the gas flows, see `flow.about_the_flow`.
-        """
+        """Compute k_B T of each cell relative to the mean motion, always in these cells if `local`."""
         about = mean_motion(self.run, dict(zip(self.axes, self.numbers, strict=True)), local)
         masses = self.run.masses[self.run.moving]
         chosen: np.ndarray | slice = slice(None)

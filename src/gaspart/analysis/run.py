@@ -8,20 +8,21 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from gaspart import theory
+from gaspart import analysis, theory
 from gaspart.analysis.conditions import SLIDING, VARYING
 from gaspart.analysis.flow import Peculiar, about_the_flow, mean_motion, sum_squares
+from gaspart.analysis.observables import OBSERVABLES, require_selection
 from gaspart.analysis.run_data import ABOUT, FLOW, RunData
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.boundaries import refuse_open, refuse_sheared
-from gaspart.scene.gas import Gas, Mixture
+from gaspart.scene.facts import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import by_number
@@ -30,6 +31,12 @@ from gaspart.trajectory.correlator import PairCounter
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gaspart.analysis.observable import Observable
+
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation
 
@@ -47,9 +54,8 @@ class Run(RunData):
 
     @cached_property
     def motion(self) -> Peculiar:
-        """Velocities of the moving particles relative to the local flow or the centre of mass. If the gas
-        flows, the velocities are relative to the local flow. Otherwise they are relative to the centre of
-        mass along axes on which the momentum is conserved (see `flow`).
+        """Velocities of moving particles relative to the local flow if the gas flows, else to the centre of
+        mass.
         """
         return about_the_flow(self)
 
@@ -60,9 +66,7 @@ class Run(RunData):
 
     @cached_property
     def freedoms(self) -> np.ndarray:
-        """Number of translational degrees of freedom in each frame, shape (T,). Raises SceneError if there is
-        no degree of freedom, for example for one particle in a periodic container.
-        """
+        """Translational degrees of freedom in each frame (T,); SceneError without any."""
         moving = int(self.moving.sum())
         values = np.full(len(self.time), self.dimension * moving - int(self.conserved.sum()), dtype=float)
         if self.flow_axes:
@@ -101,9 +105,8 @@ class Run(RunData):
 
     @cached_property
     def _energies(self) -> np.ndarray:
-        """Kinetic energies relative to the flow and to rest, and degrees of freedom. The rows of the array
-        (3, T) are twice the energy relative to the flow, twice the energy relative to rest, and the degrees
-        of freedom.
+        """Twice the energy relative to the flow, twice that relative to rest, and degrees of freedom
+        (3, T).
         """
         masses, about, rows = self.masses[self.moving], mean_motion(self), []
         for _, part in self.parts():
@@ -145,8 +148,8 @@ class Run(RunData):
 
     @property
     def fluid(self) -> Gas | None:
-        """Gas of the scene, if the scene has at least two particles in a periodic container. None otherwise,
-        and unless the particles are a fluid in the density range of its equation of state.
+        """Gas of at least two particles in a periodic container, as a fluid within its equation of state;
+        else None.
         """
         gas = self.scene.gas
         if gas is None or gas.count < 2 or not self.periodic.all():
@@ -176,21 +179,15 @@ class Run(RunData):
 
     @property
     def moving_fluid(self) -> Gas | None:
-        """The `fluid` at the temperature of the run; None if nothing moves. Raises SceneError under the
-        conditions of `moving`.
-        """
+        """The `fluid` at the temperature of the run; None if nothing moves."""
         gas = self.fluid
         return replace(gas, temperature=self.temperature) if gas and self.temperature > 0.0 else None
 
 
 def select_particles(run: Run, species: int | None, particles: Sequence[int] | None) -> np.ndarray:
-    """Return indices of the selected particles among the moving particles (M,); by default all.
-
-    species : species number, as in `Run.species`.
-    particles : particle numbers, as in the file.
-
-    Raises SceneError if both arguments are passed, if a number does not exist, and if no selected particle
-    moves.
+    """Return indices of the selected particles among the moving particles (M,); by default all. `species`:
+    species number, as in `Run.species`. `particles`: particle numbers, as in the file. Raises SceneError if
+    both arguments are passed, if a number does not exist, and if no selected particle moves.
     """
     moving = np.flatnonzero(run.moving)
     if species is not None and particles is not None:
@@ -213,9 +210,7 @@ def select_particles(run: Run, species: int | None, particles: Sequence[int] | N
 
 
 def require_collisions(run: Run) -> None:
-    """Raise SceneError if no collision occurred in the measured part of a run. The scatter of the observable
-    would then be unknown.
-    """
+    """Raise SceneError without a collision in the measured run: the scatter would be unknown."""
     if not run.increments("collisions").any():
         raise SceneError("collisions", 0, "none happened in the measured part; make a longer run")
 
@@ -231,14 +226,10 @@ def open_run(
 ) -> Iterator[Run]:
     """Open the part of a source after the time `start`. By default the first quarter of the run is discarded.
     A simulation is run again from its start to its present time. If `pairs` is True, the collisions of each
-    pair of species are counted.
-
-    sheared : True if the observable is defined in a sheared gas.
-    varying : True if the observable is defined with open faces.
-    about : see `Run`.
-
-    Raises SceneError if the observable is undefined for the scene, if there are fewer than two frames, and
-    for input that `open_trajectory` rejects.
+    pair of species are counted. `sheared`: True if the observable is defined in a sheared gas. `varying`:
+    True if the observable is defined with open faces. `about`: see `Run`. Raises SceneError if the observable
+    is undefined for the scene, if there are fewer than two frames, and for input that `open_trajectory`
+    rejects.
     """
     one_of("about", about, ABOUT)
     if isinstance(source, Simulation):
@@ -268,9 +259,7 @@ def open_run(
 
 
 def repeat_run(simulation: Simulation, pairs: bool = False) -> xr.Dataset:
-    """Run a simulation again from its start, and return its frames at equally spaced times. Raises SceneError
-    for a simulation that has not advanced.
-    """
+    """Run a simulation again and return evenly spaced frames; SceneError if it has not advanced."""
     scene, engine = simulation.scene, simulation.engine
     if simulation.time <= 0.0:
         raise SceneError("simulation", "at time 0", "has not advanced; call advance(duration=...) first")
@@ -322,3 +311,45 @@ def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Da
             "tallies": tallies_to_json(simulation.tallies),
         },
     )
+
+
+def measure_single(
+    source: Source, name: str, start: float | None = None, end: float | None = None, **selection: Any
+) -> Observable:
+    """Measure an observable of one run by its name, without a remark on drifts; see `measuring.measure`."""
+    declared = OBSERVABLES[name]
+    require_selection(name, selection)
+    function = getattr(analysis, declared.function)
+    with until_time(source, end, declared.needs == "pairs") as part:
+        result: Observable = function(part, start=start, **declared.arguments, **selection)
+    return result
+
+
+@contextmanager
+def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
+    """Return the frames of a source up to `end`, with collisions of each pair of species if `pairs`."""
+    if end is None:
+        yield source
+        return
+    from gaspart.keys.values import number
+
+    with open_frames(source, pairs) as data:
+        time = data["time"].values
+        last = number("end", end, "must be a finite number")
+        count = int((time <= last + 1e-9 * abs(last)).sum())
+        if count < 2:
+            longest = float(time[-1]) if len(time) else 0.0
+            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
+        yield data.isel(frame=slice(count))
+
+
+@contextmanager
+def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
+    """Yield the frames of a source; they are read or computed only once."""
+    from gaspart.simulation import Simulation
+    from gaspart.trajectory.reading import open_trajectory
+
+    if isinstance(source, Simulation):
+        source = repeat_run(source, pairs)
+    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+        yield data

@@ -76,8 +76,8 @@ class RunData:
         return np.asarray(self.data[name].values)
 
     def block_length(self, blocks: int) -> int:
-        """Return the number of frames in each of `blocks` equal blocks, after the first frame. Frames that
-        remain do not belong to any block. Raises ValueError if there are too few frames.
+        """Return the number of frames in each of `blocks` equal blocks after the first; ValueError if too
+        few.
         """
         length = (len(self.time) - 1) // blocks
         if length < 1:

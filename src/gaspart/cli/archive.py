@@ -95,8 +95,8 @@ def _verify(options: argparse.Namespace) -> None:
 _EXAMPLES_OF_BUDGET = """examples:
   gaspart budget config/config.yaml
   gaspart budget config/precise.yaml -o budget.csv    # a line for each claim
-  gaspart budget config/config.yaml --next results/efforts.yaml
-  snakemake --cores all --configfile=results/efforts.yaml"""
+  gaspart budget config/config.yaml --status          # what is made and left
+  gaspart budget config/config.yaml --next            # then snakemake --cores all"""
 
 
 def add_budget(parser: Parser) -> None:
@@ -110,17 +110,13 @@ def add_budget(parser: Parser) -> None:
     set_command(parser, _budget, text, _EXAMPLES_OF_BUDGET)
     parser.add_argument("config", metavar="FILE", help="config of the workflow (YAML)")
     parser.add_argument("-o", "--output", metavar="FILE", help="write a line for each claim (CSV) instead")
+    text = "print the points of each figure that are made and left instead, while the workflow runs too"
+    parser.add_argument("--status", action="store_true", help=text)
     parser.add_argument(
         "--next",
-        metavar="FILE",
-        help="write twice the effort of the experiments whose claims are open, at most 4, as a config "
-        "(YAML); exit code 1 if no effort decides more",
-    )
-    parser.add_argument(
-        "--effort",
-        type=float,
-        metavar="E",
-        help="with --next: the effort of the run, if it is not the config's",
+        action="store_true",
+        help="double the effort of the experiments whose claims are open, up to 4, for the next run of the "
+        "workflow; exit code 1 if no effort decides more",
     )
 
 
@@ -133,9 +129,9 @@ def _budget(options: argparse.Namespace) -> None:
         rule = "is a scene, and must be a config of the workflow; gaspart advise predicts the cost of a scene"
         raise SceneError("config", options.config, rule)
     if options.next:
-        lines = config_command("decide")(options.config, options.next, options.effort)
+        lines = config_command("decide")(options.config)
         print_lines(lines or ["no effort of at most 4 decides another claim"])
         if not lines:
             raise CheckFailed
         return
-    print_lines(config_command("budget")(options.config, options.output))
+    print_lines(config_command("budget")(options.config, options.output, options.status))

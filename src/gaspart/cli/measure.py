@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.frames import until_time
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import remark_of
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
+from gaspart.analysis.run import until_time
 from gaspart.analysis.run_data import ABOUT
 from gaspart.cli.arguments import (
     Parser,
@@ -177,10 +177,8 @@ def _measure_each(
     selection: dict[str, Any],
     field: dict[str, Any],
 ) -> Iterator[tuple[str, Observable]]:
-    """Measure each observable in one file, or as the mean over several files.
-
-    times : start and end of the time interval whose frames are used.
-    field : arguments of `gaspart.analysis.field`.
+    """Measure each observable in one file, or as the mean over several files. `times`: start and end of the
+    time interval whose frames are used. `field`: arguments of `gaspart.analysis.field`.
     """
     from gaspart.analysis.combination import replicas
     from gaspart.trajectory.reading import open_trajectory

@@ -69,10 +69,8 @@ def progress(
     quiet: bool, started: Callable[[], None] | None = None, remark: Callable[[], str] = str
 ) -> Progress | None:
     """Return a function that shows the progress of a run. Returns None if the output is not a terminal, or if
-    `quiet` is True.
-
-    started : function that is called at the first report.
-    remark : function that returns text for the end of the line.
+    `quiet` is True. `started`: function that is called at the first report. `remark`: function that returns
+    text for the end of the line.
     """
     if quiet or not sys.stderr.isatty():
         return None

@@ -58,12 +58,9 @@ class EventLog:
 
     @property
     def events(self) -> dict[str, np.ndarray]:
-        """Recorded events as arrays, by name, for M events.
-
-        time : (M,)
-        particles : (M, 2); for a wall hit the second entry is -1 - face
-        positions, velocities : (M, 2, d); for a wall hit the second entry is NaN
-        spins : (M, 2) or (M, 2, 3)
+        """Recorded events as arrays, by name, for M events. `time`: (M,). `particles`: (M, 2); for a wall hit
+        the second entry is -1 - face. `positions` and `velocities`: (M, 2, d); for a wall hit the second
+        entry is NaN. `spins`: (M, 2) or (M, 2, 3).
         """
         parts = zip(*(self._parts or [self._copy(0)]), strict=True)
         return dict(zip(self._keys, map(np.concatenate, parts), strict=True))
@@ -77,10 +74,9 @@ class EventLog:
 def checkpoint_identity(
     scene: Scene, settings: Mapping[str, Any], seed: int | tuple[int, ...], initial: State | None = None
 ) -> dict[str, np.ndarray]:
-    """Return texts that identify all input of a simulation, by their keys in a checkpoint.
-
-    settings : name of the engine, and its settings that change the results
-    initial : initial state; None if it follows from the scene and the seed
+    """Return texts that identify all input of a simulation, by their keys in a checkpoint. `settings`: name
+    of the engine, and its settings that change the results. `initial`: initial state; None if it follows from
+    the scene and the seed.
     """
     texts = {
         "version": __version__,
@@ -118,9 +114,7 @@ def check_identity(checkpoint: Any, identity: Mapping[str, np.ndarray]) -> None:
 
 
 def check_parts(parts: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray]) -> None:
-    """Raise SceneError unless a checkpoint contains all `expected` arrays. Each array must have the shape and
-    the kind of data type of the expected array.
-    """
+    """Raise SceneError unless a checkpoint has all `expected` arrays with their shapes and kinds of types."""
     for key, array in expected.items():
         value = parts.get(key)
         alike = isinstance(value, np.ndarray) and value.shape == np.shape(array)
@@ -187,9 +181,7 @@ class Dynamics(ABC):
         return next((part for part in parts if part.name == name), None)
 
     def sums_of(self, tally: str) -> np.ndarray:
-        """Return the sums of an optional tally in one array. Raises KeyError if the tally was not
-        requested.
-        """
+        """Return the sums of an optional tally in one array; KeyError if it was not requested."""
         part = self._tally_part(tally)
         if part is None:
             raise KeyError(tally)
@@ -222,13 +214,9 @@ class Dynamics(ABC):
         return {**{key: getattr(self, f"_{key}") for key in self.numbers}, **self._arrays()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return arrays with the shapes that `restore` requires from this checkpoint. Raises SceneError for a
-        damaged checkpoint.
-        """
+        """Return arrays with the shapes that `restore` requires; SceneError for a damaged checkpoint."""
         return self.checkpoint()
 
     @abstractmethod
     def _go_on(self, checkpoint: dict[str, np.ndarray]) -> None:
-        """Compute all data that follow from the restored arrays and numbers of a checkpoint. The caller has
-        already restored these arrays and numbers.
-        """
+        """Compute all data that follow from restored arrays and numbers of a checkpoint."""

@@ -88,10 +88,9 @@ class Engine:
         return []
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Return an upper bound of the relative error of a quantity due to the settings.
-
-        kind : kind of quantity: "rates" of collisions, "paths" of particles, "fluxes" of momentum and heat,
-            or pressures on "walls"
+        """Return an upper bound of the relative error of a quantity due to the settings. `kind`: kind of
+        quantity: "rates" of collisions, "paths" of particles, "fluxes" of momentum and heat, or pressures on
+        "walls".
         """
         return 0.0
 
@@ -109,9 +108,7 @@ class Engine:
         return 0
 
     def check_features(self, scene: Scene) -> None:
-        """Raise SceneError for features of a scene that this engine does not support. The message names the
-        engines that support them.
-        """
+        """Raise SceneError for unsupported features of a scene, with the engines that support them."""
         present = scene.features
         missing = [(name, "none") for name in FEATURES if name in present - self.models]
         together = [pair for pair in self.excludes if set(pair) <= present]
@@ -136,9 +133,7 @@ class Engine:
         return self.equation != "exact" or bool(scene.face_temperatures) or scene.thermostat is not None
 
     def variant(self, scene: Scene) -> str:
-        """Return the name of the compiled kernel variant for a scene. The name does not depend on the
-        features of the scene.
-        """
+        """Return the name of the compiled kernel variant, which does not depend on the scene's features."""
         raise NotImplementedError
 
     def for_small_scene(self, scene: Scene) -> Engine:
@@ -162,10 +157,8 @@ class Engine:
         tallies: Sequence[OptionalTally] = (),
     ) -> Dynamics:
         """Prepare the engine for a scene in an initial state. Raises SceneError for features that the engine
-        does not support.
-
-        seed : seed of thermal walls and kicks
-        tallies : optional tallies in addition to the counters of every run; `check_tally` must accept them
+        does not support. `seed`: seed of thermal walls and kicks. `tallies`: optional tallies in addition to
+        the counters of every run; `check_tally` must accept them.
         """
         raise NotImplementedError
 
@@ -207,9 +200,7 @@ def required_settings(engine: type[Engine]) -> list[str]:
 
 
 def constructors() -> str:
-    """Return constructor calls of all engines, for messages. The calls include all settings that have no
-    default.
-    """
+    """Return constructor calls of all engines, with settings that have no default, for messages."""
     *others, last = (
         f"{engine.__name__}({', '.join(required_settings(engine))})" for engine in ENGINES.values()
     )

@@ -47,11 +47,7 @@ class SteppedDynamics(Dynamics):
     def _place(
         self, slots: np.ndarray, positions: np.ndarray, velocities: np.ndarray, images: np.ndarray
     ) -> None:
-        """Place the particles into their slots.
-
-        slots : (N,), particle number in each slot
-        positions, velocities, images : (N, d)
-        """
+        """Place particles, by number (N,) in each slot, with positions, velocities and images (N, d)."""
 
     @property
     @abstractmethod
@@ -75,8 +71,8 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _advance_to(self, step: int) -> None:
-        """Perform and count the steps up to the step with this number, at least one step. Raises
-        SimulationError if the run cannot continue.
+        """Perform and count at least one step, up to this number; SimulationError if the run cannot
+        continue.
         """
 
     @abstractmethod
@@ -85,23 +81,17 @@ class SteppedDynamics(Dynamics):
 
     @abstractmethod
     def _counts(self) -> dict[str, Any]:
-        """Return the values of the counters by the names of their fields in `Tally`. Time, steps and the
-        energy of faces are not included.
-        """
+        """Return the counters, except time, steps and energy of faces, by their fields in `Tally`."""
 
     @property
     @abstractmethod
     def _loss(self) -> np.ndarray:
-        """Energy removed by contacts since the last reset, as terms (K, 2) of a sum. The terms are in units
-        that contain `unit_mass`.
-        """
+        """Energy removed by contacts since the last reset, as terms (K, 2) in units with `unit_mass`."""
 
     @property
     @abstractmethod
     def _heat(self) -> np.ndarray:
-        """Energy given to each face by particles whose velocities it draws, as terms (2d, 2). The unit is the
-        same as for `_loss`.
-        """
+        """Energy given to each face by drawn velocities, as terms (2d, 2) in the unit of `_loss`."""
 
     @property
     def _given(self) -> np.ndarray:

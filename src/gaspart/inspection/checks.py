@@ -63,11 +63,7 @@ _PRESSURE, _DIFFUSION = "pressure Z", "diffusion coefficient D"
 
 
 def judge(frames: Frames, tolerance: float | None = None, driven: bool = False) -> list[Check]:
-    """Perform all checks of a trajectory.
-
-    tolerance : the allowed overlap, as a fraction of a diameter.
-    driven : True if something may give energy to the particles or take it.
-    """
+    """Perform all checks, with a `tolerance` of overlaps in diameters; `driven`: energy may be exchanged."""
     checks = [*judge_places(frames, tolerance), *judge_conserved(frames, driven)]
     reason, acting = frames.no_identity, [check.name for check in checks if check.acts]
     if acting and not reason:  # more than elastic contacts: the equilibrium is unknown
@@ -119,9 +115,8 @@ def _overlaps(frames: Frames, seen: np.ndarray, tolerance: float | None) -> Chec
 
 
 def _overlap_bounds(frame: Frames) -> tuple[float, float]:
-    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance. Pairs
-    are counted by distance, which takes a tenth of the time of `deepest_overlap`. If there are no bounds,
-    return (0, inf).
+    """Return bounds on the deepest overlap of equal particles, as a fraction of the contact distance. If
+    there are no bounds, return (0, inf).
     """
     if frame.diameter is None or not np.isfinite(frame.positions).all():
         return 0.0, math.inf

@@ -27,9 +27,7 @@ _DIGITS = 12  # decimal places at which decimal and binary numbers differ
 
 
 class Flights(NamedTuple):
-    """Number of flights without a collision, and their largest relative error. The frame is the one at which
-    the flight with the largest error ends.
-    """
+    """Number of flights without a collision, their largest relative error, and the frame at which it ends."""
 
     number: int
     worst: float
@@ -83,10 +81,9 @@ DRIFT = 1e-6
 
 
 def judge_conserved(frames: Frames, driven: bool = False) -> list[Check]:
-    """Check the kinetic energy, the momentum along periodic axes, and flights between frames.
-
-    driven : True if something may give energy to the particles or take it. Otherwise the energy in a file of
-        another program must not change in one direction.
+    """Check the kinetic energy, the momentum along periodic axes, and flights between frames. `driven`: True
+    if something may give energy to the particles or take it. Otherwise the energy in a file of another
+    program must not change in one direction.
     """
     names = "energy", "momentum", "flights"
     if reason := why_not_speeds(frames):
@@ -162,10 +159,8 @@ _KEY = np.sqrt([2.0, 3.0, 5.0])
 
 
 def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
-    """Return frames without copied velocities, and the first frame with reordered particles.
-
-    doubt : reason to suspect that velocities are copies.
-    identified : True if ids have restored the order.
+    """Return frames without copied velocities (`doubt`: a reason) and the first reordered frame
+    (`identified`: by ids).
     """
     if frames.velocities is None or len(frames.positions) < 2 or frames.lengths_by_frame is not None:
         return frames  # in a container that changes, displacements are not compared with velocities
@@ -176,9 +171,7 @@ def continuous(frames: Frames, doubt: str | None, identified: bool) -> Frames:
 
 
 def _are_copied(frames: Frames, doubtful: bool) -> bool:
-    """Return True if all frames have the same velocities, but displacements contradict them. If `doubtful` is
-    True, equal velocities count as copies unless the times are known and all particles move by them.
-    """
+    """Return True if all frames have the same velocities, but displacements contradict them."""
     velocities = frames.velocities
     assert velocities is not None, "see `continuous`"
     first = velocities[0]
@@ -205,9 +198,8 @@ def _reordered_frame(frames: Frames) -> int | None:
 
 def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
     """Return True if frame n + 1 contains velocities of frame n in other rows. These velocities must occur
-    more often in other rows than in their own rows. Velocities that several particles share do not count. In
-    a head-on collision, two equal particles exchange their velocities. If the times are known, positions
-    distinguish this case.
+    more often in other rows than in their own rows. Velocities that several particles share do not count. If
+    the times are known, positions distinguish this case.
     """
     assert frames.velocities is not None, "see `continuous`"
     keys = [(velocity * _KEY[: frames.dimension]).sum(axis=1) for velocity in frames.velocities[n : n + 2]]
@@ -229,9 +221,7 @@ def _same_velocities_elsewhere(frames: Frames, n: int) -> bool:
 
 
 def _predicted_elsewhere(frames: Frames, n: int) -> bool:
-    """Return True if most particles of a frame are at positions predicted for other rows. The particles are
-    in frame n + 1; the predictions are for rows of frame n.
-    """
+    """Return True if most particles of frame n + 1 are at positions predicted for other rows of frame n."""
     if frames.time is None or frames.count < 3:
         return False
     assert frames.velocities is not None, "see `continuous`"

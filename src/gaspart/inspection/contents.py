@@ -69,8 +69,8 @@ class Contents:
 
 @dataclass(frozen=True)
 class Overrides:
-    """Values passed by the user, which take precedence over the file; see `readers.read_frames`. If `last` is
-    True, only the last frame of a GSD or XYZ file is read. This frame must be complete.
+    """Values of the user, before those of the file (`readers.read_frames`); `last`: the last,
+    complete frame.
     """
 
     radius: float | None = None
@@ -131,9 +131,8 @@ def complete_frames(contents: Contents, overrides: Overrides, path: str) -> Fram
 def _wrapped(
     positions: Vectors, origin: np.ndarray, sides: np.ndarray, periodic: tuple[bool, ...], path: str
 ) -> Rows:
-    """Return positions (T, N, d) from the lower corner, wrapped to [0, L) on periodic axes.
-
-    Coordinates are wrapped one axis at a time, because numpy broadcasts an axis of length 3 slowly.
+    """Return positions (T, N, d) wrapped to [0, L) on periodic axes, one by one: numpy is slow over short
+    axes.
     """
 
     def wrap(frame: np.ndarray, n: int) -> np.ndarray:
@@ -284,7 +283,7 @@ def _radii(contents: Contents, overrides: Overrides, path: str) -> np.ndarray:
 def _times(contents: Contents, overrides: Overrides, path: str) -> np.ndarray | None:
     """Return the times (T,), or None if the file contains none. Equal times in all frames count as missing,
     because the field was never set. Times that are evenly spaced within their resolution are replaced by
-    evenly spaced times. The reason is that late times deviate more in single precision, or with few digits.
+    evenly spaced times.
     """
     frames = len(contents.positions)
     time, resolution = contents.time, contents.time_resolution

@@ -72,9 +72,7 @@ def _removed_energy(data: xr.Dataset) -> np.ndarray:
 
 
 def _potential(scene: Scene, data: xr.Dataset) -> np.ndarray:
-    """Compute the energy (T,) of all particles under gravity and in wells. If there are displacements, the
-    energy under gravity is relative to time 0.
-    """
+    """Compute the energy (T,) under gravity, from displacements relative to time 0, and in wells."""
     positions = data["coordinates"].values.astype(float)
     energy = np.zeros(len(positions))
     if scene.gravity is not None:
@@ -126,9 +124,8 @@ def _contacts(series: dict) -> str:
 
 
 def _samples(scene: Scene, series: dict) -> str:
-    """Return a line that states the number of independent values of the pressure. This number is the number
-    of intervals between frames divided by twice their correlation time, or the number of collisions if this
-    is smaller.
+    """Return a line that states the number of independent values of the pressure. This is the intervals over
+    twice their correlation time, or the collisions if these are fewer.
     """
     counted = np.diff(series["virial_sum"])
     per_particle = 2.0 * series["collisions"][-1] / max(scene.count, 1)

@@ -14,7 +14,7 @@ import numpy as np
 
 from gaspart.analysis.flow import sum_squares
 from gaspart.engines import Engine
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.sizes import ball_volume
 
@@ -205,8 +205,8 @@ class Frames:
 
     @property
     def temperatures(self) -> np.ndarray:
-        """Temperature k_B T of each frame for particles of mass 1, shape (T,). The temperature is 0 for a
-        single particle that has no motion relative to the mean.
+        """Temperature k_B T of each frame for mass 1, shape (T,); 0 for a single particle at rest to the
+        mean.
         """
         freedom = self.dimension * self.count - sum(self.periodic)
         return np.asarray(self.squares.peculiar / max(freedom, 1))

@@ -19,9 +19,7 @@ _FIRST_ONLY = (
 
 
 def read_gsd(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last frame; raise SceneError for contents that cannot be checked. A field that
-    no frame contains is unknown, although the schema defines a default. The origin is the middle of the box.
-    """
+    """Read all frames, or the last, with the origin in the middle; a field that no frame has is unknown."""
     hoomd = optional("gsd.hoomd", "gsd", "GSD files")
     with open_regular(path) as opened_file, hoomd.open(descriptor_path(opened_file), "r") as file:
         first = max(len(file) - 1, 0) if overrides.last else 0
@@ -76,9 +74,7 @@ def read_gsd(path: Path, overrides: Overrides) -> Contents:
 def _radii(
     frames: list[Any], by_diameter: np.ndarray | None, overrides: Overrides, path: Path
 ) -> np.ndarray | None:
-    """Return the radii (T, N), from the diameters or from the shapes of the types. The file is rejected if
-    both exist and differ.
-    """
+    """Return the radii (T, N), from diameters or shapes of types; SceneError if both exist and differ."""
     shapes = []
     for frame in frames:
         by_type = [*(_radius_of(shape, path) for shape in frame.particles.type_shapes), np.nan]

@@ -237,8 +237,8 @@ def _positions(file: Any, lengths: np.ndarray | None, path: Path) -> tuple[Vecto
 
 
 def _times(file: Any) -> tuple[np.ndarray | None, float]:
-    """Return the times in double precision, and their resolution. LAMMPS may store steps and a scale factor
-    instead. OVITO stores frame numbers in `time`, and the time, if it is known, in `Time`.
+    """Return the times in double precision, and their resolution. LAMMPS may store steps and a scale factor,
+    and OVITO frame numbers in `time` and times in `Time`.
     """
     name = "Time" if str(getattr(file, "program", "")) == "OVITO" else "time"
     if name not in file.variables:

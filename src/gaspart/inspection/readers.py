@@ -50,16 +50,12 @@ def read_frames(
     time_step: float | None = None,
     origin: str | tuple[float, ...] | None = None,
 ) -> Frames:
-    """Read the frames of a trajectory; the arguments take precedence over the file.
-
-    radius : radius of all particles.
-    lengths : (d,), side lengths of the container.
-    boundary : "periodic" (the default for files of other programs without a boundary), "wall", or one word
-        per axis.
-    time_step : simulated time of one step if the file counts steps (GSD), otherwise the time between frames.
-    origin : (d,), lower corner of the container, or "centre" if the origin is its middle.
-
-    Raises SceneError for a file that cannot be read, or for missing data.
+    """Read the frames of a trajectory; the arguments take precedence over the file. `radius`: radius of all
+    particles. `lengths`: (d,), side lengths of the container. `boundary`: "periodic" (the default for files
+    of other programs without a boundary), "wall", or one word per axis. `time_step`: simulated time of one
+    step if the file counts steps (GSD), otherwise the time between frames. `origin`: (d,), lower corner of
+    the container, or "centre" if the origin is its middle. Raises SceneError for a file that cannot be read,
+    or for missing data.
     """
     path, overrides = Path(path), Overrides(radius, lengths, boundary, time_step, origin)
     with _reading(path):
@@ -220,9 +216,7 @@ def _in_dimensions(name: str, values: np.ndarray, scene: Scene, path: Path) -> n
 
 
 def _origin(contents: Contents, scene: Scene) -> np.ndarray:
-    """Return the lower corner (d,) of the container. A file contains the part of the container up to the
-    piston, which is at its side when a run begins.
-    """
+    """Return the lower corner (d,) of the container, of which a file has the part up to the piston."""
     low, sides = np.zeros(scene.dimension), np.array(scene.container.lengths)
     for number, _ in scene.pistons if contents.lengths is not None else ():
         axis, high = divmod(number, 2)

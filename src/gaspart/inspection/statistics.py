@@ -24,7 +24,7 @@ from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import EXACT, collision_rate
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST
@@ -88,9 +88,7 @@ def decorrelated_frames(paths: Iterable[np.ndarray], distance: float, first: int
 
 
 def first_relaxed_frame(frames: Frames) -> int | None:
-    """Return the first frame in which particles have moved by the distance between neighbours, or None. The
-    displacement is the root mean square over the particles.
-    """
+    """Return the first frame in which the rms displacement is the distance between neighbours, or None."""
     moved = (sum_squares(path).mean() for path in frames.paths())
     return next((n for n, square in enumerate(moved) if square >= frames.spacing**2), None)
 
@@ -107,7 +105,7 @@ def describe_motion(frames: Frames) -> str:
 def density_modulation(frames: Frames, n: int, of: np.ndarray | None = None) -> float:
     """Compute the largest power of the two longest density waves along each axis. The power is computed for
     the particle density in frame n. If `of` (N,) is passed, it is computed for the density of this property
-    minus the mean of the property. The power is about 1 if the density is uniform.
+    minus the mean of the property.
     """
     weights = np.ones(frames.count) if of is None else of - of.mean()
     total = float((weights**2).sum())
@@ -157,11 +155,10 @@ def why_not_speeds(frames: Frames) -> str | None:
 
 
 def judge_speeds(frames: Frames) -> list[Check]:
-    """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames. The number
-    of collisions is `count_collisions`. A deviation of the kurtosis decays with the slowest rate of the
-    homogeneous Boltzmann equation. The initial deviation is computed from the first frame. The test of
-    Maxwell's distribution also requires relaxed positions. For spheres at a packing fraction of 0.3 that were
-    inserted at random with Maxwellian velocities, the kurtosis deviates for some time: by -0.0044(5) after 6
+    """Check the distribution of speeds in the last frame, and its kurtosis in all relaxed frames. A deviation
+    of the kurtosis decays with the slowest rate of the homogeneous Boltzmann equation. The test of Maxwell's
+    distribution also requires relaxed positions. For spheres at a packing fraction of 0.3 that were inserted
+    at random with Maxwellian velocities, the kurtosis deviates for some time: by -0.0044(5) after 6
     collisions per particle, -0.0029(5) after 10 and -0.0003(13) after 15. After 15 collisions the spheres
     have moved by the distance between neighbours. With the same velocities but relaxed positions, the first
     deviation is -0.0006(7).
@@ -213,8 +210,8 @@ def _law(frames: Frames) -> Check:
 
 
 def _expected_kurtosis(frames: Frames) -> float:
-    """Compute the equilibrium kurtosis at fixed energy (exact). The momentum along periodic axes is zero. As
-    in `theory.kurtosis`, except that <v_k^2> along a periodic axis is reduced by the factor 1 - 1/N.
+    """Compute the equilibrium kurtosis at fixed energy (exact). As in `theory.kurtosis`, except that <v_k^2>
+    along a periodic axis is reduced by the factor 1 - 1/N.
     """
     parts = np.where(frames.periodic, 1.0 - 1.0 / frames.count, 1.0)
     freedoms = frames.count * parts.sum()
@@ -224,7 +221,6 @@ def _expected_kurtosis(frames: Frames) -> float:
 def _normal(deviation: float, skewness: float) -> float:
     """Return the normal deviation with the same probability as a deviation of a skewed distribution. Above
     the mean the gamma distribution is used (Wilson and Hilferty, Proc. Natl. Acad. Sci. 17, 684 (1931)).
-    Below the mean, where the tail is shorter, the deviation is unchanged.
     """
     if deviation <= 0.0:
         return deviation
@@ -267,9 +263,8 @@ def contact_values(frames: Frames) -> np.ndarray:
 
 
 def has_too_few_contacts(frames: Frames) -> bool:
-    """Return True if there are too few pairs near contact for an error of `contact_values`. The number of
-    pairs in a shell has a Poisson distribution about the mean of an ideal gas. If this mean is small, the
-    average over frames has a skewed distribution. Without any pair, the scatter is 0.
+    """Return True if there are too few pairs near contact for an error of `contact_values`. If this mean is
+    small, the average over frames has a skewed distribution. Without any pair, the scatter is 0.
     """
     _, coefficients, pairs = _contact_fit(frames)
     variance, third = (len(frames.positions) * (coefficients**k @ pairs) for k in (2, 3))
@@ -305,9 +300,7 @@ _NUMBERS = 2_000_000  # numbers of the paths that are in memory at once
 
 
 def why_not(frames: Frames) -> str | None:
-    """Return the reason why D cannot be measured from a trajectory, or None. The particles must be equal and
-    have velocities.
-    """
+    """Return the reason why D cannot be measured, such as unequal particles or no velocities, or None."""
     if frames.dimension == 2:
         return "discs have none: the displacement's square grows like t ln t"
     if frames.time is None or not all(frames.periodic):
@@ -361,9 +354,7 @@ def diffusion(frames: Frames) -> tuple[Estimate, tuple[float, float]]:
 
 
 def expected_diffusion(frames: Frames, window: tuple[float, float]) -> tuple[float, float, str]:
-    """Return the theoretical D in this cube, its uncertainty and its source. The values are for the equation
-    of the engine, if the file names an engine.
-    """
+    """Return the theoretical D in this cube, for the file's engine, its uncertainty and its source."""
     gas, engine, scene = _gas(frames), frames.engine, frames.scene
     prediction = diffusion_in_cube(gas, float(frames.lengths[0]), engine, scene, window)
     assert prediction is not None, "see `why_not`"

@@ -16,10 +16,7 @@ exceeds it.
 
 @dataclass(frozen=True)
 class Check:
-    """Result of one check, passed or not, or None if it could not be made, and the reason.
-
-    If `acts` is True, forces other than elastic contacts act on the particles.
-    """
+    """Result of one check, None if it could not be made, and the reason; `acts`: by other forces."""
 
     name: str
     passed: bool | None
@@ -34,10 +31,9 @@ class Check:
 def compare_with_theory(
     name: str, measured: Estimate, theory: Estimate, basis: str, deviation: float | None = None
 ) -> Check:
-    """Compare a measurement with theory; the check passes within `LIMIT` combined standard errors.
-
-    basis : source of the theory, and the number of samples.
-    deviation : deviation in standard errors, if its distribution is neither normal nor Student's t.
+    """Compare a measurement with theory; the check passes within `LIMIT` combined standard errors. `basis`:
+    source of the theory, and the number of samples. `deviation`: deviation in standard errors, if its
+    distribution is neither normal nor Student's t.
     """
     sigma = abs((measured - theory).deviation if deviation is None else deviation)
     text = f"{measured.value:.5g} +- {measured.error:.2g}, theory {theory.value:.5g}"

@@ -45,9 +45,7 @@ _TRUE, _FALSE = ("t", "true", "1"), ("f", "false", "0")
 
 
 def read_xyz(path: Path, overrides: Overrides) -> Contents:
-    """Read all frames, or the last frame. Raises SceneError for contents that cannot be checked, and
-    ValueError for other text.
-    """
+    """Read all frames, or the last frame; SceneError for unusable contents, ValueError for other text."""
     kinds: dict[str, int] = {}  # a number for each species name
     with open_regular(path) as file, TextIOWrapper(file, encoding="utf-8") as lines:
         frames = (
@@ -143,10 +141,7 @@ def _frames(lines: Iterator[str], path: Path) -> Iterator[tuple[str, list[list[s
 def _read_frame(
     n: int, comment: str, rows: list[list[str]], kinds: dict[str, int], overrides: Overrides, path: Path
 ) -> dict:
-    """Return the fields of frame n by the names of `_NAMES`, and those of its comment.
-
-    Fields that the user passes are not read. New names of species are added to `kinds`.
-    """
+    """Return the fields of frame n by `_NAMES`, without the user's, and its comment's; extend `kinds`."""
     pairs = {key.lower(): value.strip("\"'") for key, value in _PAIR.findall(comment)}
     named = _columns(pairs["properties"], path) if "properties" in pairs else _plain_columns(rows)
     if "properties" not in pairs and (sides := _plain_sides(comment)):

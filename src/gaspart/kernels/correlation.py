@@ -12,10 +12,8 @@ from gaspart.kernels.compile.policy import inner_helper, kernel
 
 @kernel
 def add_velocity_products(earlier, now, used, sums):
-    """Add v(0).v(t) to the row of sums (1, S) for the first `used` earlier samples.
-
-    earlier : (1, K, S), velocities of S earlier samples
-    now : (1, K), present velocities
+    """Add v(0).v(t) to the row of sums (1, S) for the first `used` earlier samples. `earlier`: (1, K, S),
+    velocities of S earlier samples. `now`: (1, K), present velocities.
     """
     for k in range(now.shape[1]):
         v = now[0, k]
@@ -26,10 +24,8 @@ def add_velocity_products(earlier, now, used, sums):
 @kernel
 def add_displacement_products(earlier, now, used, sums):
     """Add v(0).v(t) and the products with displacements to three rows of sums (3, S). The products with
-    displacements are |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)).
-
-    earlier : (2, K, S), velocities and positions of S earlier samples
-    now : (2, K), present velocities and positions
+    displacements are |r(t) - r(0)|^2 and (r(t) - r(0)).(v(t) + v(0)). `earlier`: (2, K, S), velocities and
+    positions of S earlier samples. `now`: (2, K), present velocities and positions.
     """
     for k in range(now.shape[1]):
         v, r = now[0, k], now[1, k]
@@ -61,11 +57,10 @@ def shear_components(sums, first, d, components, filled):
 
 @kernel
 def flux_components(sums, dimension, components):
-    """Compute the components of the fluxes whose correlations are accumulated.
-
-    sums : (2 d^2 + d,), the stress tensor, its collisional part, and the heat flux
-    components : shear components of the stress tensor, components of its antisymmetric part, shear components
-        of the collisional part, 1/d of the trace of the stress tensor, and the heat flux
+    """Compute the components of the fluxes whose correlations are accumulated. `sums`: (2 d^2 + d,), the
+    stress tensor, its collisional part, and the heat flux. `components`: shear components of the stress
+    tensor, components of its antisymmetric part, shear components of the collisional part, 1/d of the trace
+    of the stress tensor, and the heat flux.
     """
     d = dimension
     filled = shear_components(sums, 0, d, components, 0)
@@ -84,11 +79,9 @@ def flux_components(sums, dimension, components):
 @kernel
 def add_flux_products(earlier, now, groups, used, sums):
     """Add the products of fluxes for the first `used` earlier samples. The products J(0) J(t), (G(t) -
-    G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) are added to sums (groups, 4, S).
-
-    earlier : (2, K, S), fluxes J and their integrals G of S earlier samples
-    now : (2, K), present fluxes and integrals
-    groups : (K,), group number of each component
+    G(0))^2, [J(0) + J(t)] / 2 and G(t) - G(0) are added to sums (groups, 4, S). `earlier`: (2, K, S), fluxes
+    J and their integrals G of S earlier samples. `now`: (2, K), present fluxes and integrals. `groups`: (K,),
+    group number of each component.
     """
     for k in range(now.shape[1]):
         flux, integral, group = now[0, k], now[1, k], groups[k]

@@ -37,9 +37,7 @@ class Placed(NamedTuple):
 
 
 class PeriodicBoxes(NamedTuple):
-    """Boxes (see `state.boxes.Boxes`), and the periods (d,) of the container. For a nonperiodic axis, the
-    period exceeds every distance.
-    """
+    """Boxes (`state.boxes.Boxes`), and periods (d,), beyond every distance for a nonperiodic axis."""
 
     periods: tuple[float, ...]
     per_side: np.ndarray
@@ -127,10 +125,7 @@ def fetch_box(placed, box):
 
 @inner_helper
 def fetch_around(at, placed, boxes):
-    """Prefetch the first particles of all nonempty boxes around a box.
-
-    at : (3,), coordinates of the box
-    """
+    """Prefetch the first particles of all nonempty boxes around a box. `at`: (3,), coordinates of the box."""
     for dz in range(3):
         z = boxes.neighbour[2, at[2], dz]
         for dy in range(3):
@@ -199,9 +194,8 @@ def is_clear_of_walls(position, radius, periods, walls):
 
 @inner_helper
 def is_free(position, at, radius, placed, boxes, oversized, walls):
-    """Return True if no particle and no interior wall is too close to a position (3,).
-
-    at : (3,), coordinates of the box of the position
+    """Return True if no particle and no interior wall is too close to a position (3,). `at`: (3,),
+    coordinates of the box of the position.
     """
     if not is_clear_of_walls(position, radius, boxes.periods, walls):
         return False
@@ -244,10 +238,8 @@ def enter(placed, i, block, n):
 def place(draws, placed, boxes, block, task, oversized, walls):
     """Test the `draws` (M, d) in [0, 1) as positions for the particles of a task. A position is free if no
     placed particle is closer than the sum of the radii. Returns (next particle to place, its failed attempts
-    so far, number of draws used).
-
-    oversized : (K,), placed particles that may reach beyond neighbouring boxes
-    walls : (M,), interior walls that must not be too close (see `obstacles`), or None
+    so far, number of draws used). `oversized`: (K,), placed particles that may reach beyond neighbouring
+    boxes. `walls`: (M,), interior walls that must not be too close (see `obstacles`), or None.
     """
     used = 0
     i, failures = task.first, task.failures

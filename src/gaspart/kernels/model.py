@@ -30,9 +30,7 @@ PISTON_PLACE, PISTON_VELOCITY, PISTON_CLOCK = range(3)  # indices of Piston.moti
 
 
 def flight_dtype(dimension: int) -> np.dtype:
-    """Return the data type of a particle between its events, at the time of its clock. It is one cache line
-    of 64 bytes.
-    """
+    """Return the data type of a particle at the time of its clock: one cache line of 64 bytes."""
     vector = (float, (dimension,))
     at = 8 * dimension
     return np.dtype(

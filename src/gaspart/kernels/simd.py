@@ -80,9 +80,7 @@ class Lanes:
         return Lanes(self.builder, self.builder.shuffle_vector(self.value, self.value, indices))
 
     def plus_product(self, factor: Lanes, other: Lanes) -> Lanes:
-        """Add a product that is exact. So it does not matter if the product is rounded before the
-        addition.
-        """
+        """Add an exact product; it does not matter if it is rounded before the addition."""
         kind = ir.FunctionType(self.value.type, [self.value.type] * 3)
         name = f"llvm.fmuladd.v{WIDTH}f64"
         fused = cgutils.get_or_insert_function(self.builder.module, kind, name)

@@ -154,8 +154,7 @@ class Controls:
 
     def scene_for(self, settings: dict[str, Any], scene: Scene) -> Scene:
         """Return a scene with values of controls. Other controls have the values of the scene of the page.
-
-        scene : the scene of the page, or this scene with another number of particles
+        `scene`: the scene of the page, or this scene with another number of particles.
         """
         values = {control.name: control.values[control.start] for control in self.all} | settings
         faces: dict[str, Surface] = dict(scene.faces)

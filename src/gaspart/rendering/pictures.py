@@ -62,10 +62,8 @@ def picture(
     paths: Sequence[np.ndarray] = (),
     direction: tuple[float, float] = CAMERA,
 ) -> np.ndarray:
-    """Draw particles with colours (N, 3), and return pixels, uint8 (H, W, 3).
-
-    paths : arrays (M, 2), drawn over discs.
-    direction : azimuth and elevation of the camera for spheres, in degrees.
+    """Draw particles with colours (N, 3), and return pixels, uint8 (H, W, 3). `paths`: arrays (M, 2), drawn
+    over discs. `direction`: azimuth and elevation of the camera for spheres, in degrees.
     """
     if particles.dimension == 3:
         from gaspart.rendering.tracer import trace

@@ -108,9 +108,8 @@ def play(scene: Scene, seed: int = 0) -> View:
 
 
 def _still(start: dict, content: dict) -> str:
-    """Return the particles at the start as paths of an SVG, one for each radius and colour.
-
-    The picture stands in the page until the gas is ready, or for ever if the browser does not run it.
+    """Return the particles at the start as paths of an SVG, one for each radius and colour. The picture
+    stands in the page until the gas is ready, or for ever if the browser does not run it.
     """
     from matplotlib.colors import to_hex
 

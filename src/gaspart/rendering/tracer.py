@@ -37,13 +37,9 @@ def trace(
     size: tuple[int, int],
     lines: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels.
-
-    positions, radii, colours : shapes (N, 3), (N,), (N, 3).
-    lengths : (3,), sides of the container, whose face at z = 0 is drawn as the floor.
-    size : (W, H) in pixels.
-    lines : (M, 2, 3), drawn like the edges of the container.
-
+    """Trace a picture (H, W, 3), from 0 to 1, and the objects in its pixels. `positions` and `radii` and
+    `colours`: shapes (N, 3), (N,), (N, 3). `lengths`: (3,), sides of the container, whose face at z = 0 is
+    drawn as the floor. `size`: (W, H) in pixels. `lines`: (M, 2, 3), drawn like the edges of the container.
     The function returns the picture, and the kind of object in the middle of each pixel (H, W).
     """
     spheres = np.column_stack([positions, radii]).astype(float)

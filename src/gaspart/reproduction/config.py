@@ -5,6 +5,7 @@ Errors are single lines with file, key, value and rule.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager, suppress
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError, unknown_word
-from gaspart.files import resolve_path
-from gaspart.keys import TEXT, Kind, choice, describe, names, record, require
+from gaspart.files import resolve_path, whole_file
+from gaspart.keys import TEXT, Kind, choice, describe, names, positive, record, require
 from gaspart.keys.values import finite, size
 from gaspart.reproduction import registry
 from gaspart.reproduction.claims.table import fill_caption, place_fault
@@ -24,7 +25,7 @@ from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import POINT, figure_points, points
 from gaspart.reproduction.report.page import split_caption
-from gaspart.yaml_text import DEEPEST, MOST_VALUES, is_exponential, read_yaml
+from gaspart.yaml_text import DEEPEST, MOST_VALUES, dump_yaml, is_exponential, read_yaml
 
 if TYPE_CHECKING:
     from gaspart.inspection.checks import Check
@@ -79,6 +80,57 @@ def add_families(config: dict[str, Any], folder: Path) -> list[Path]:
     config.clear()
     config.update(merged)
     return files
+
+
+EFFORTS = "efforts.yaml"
+"""File beside the points: the effort with which each experiment was made."""
+
+
+def keep_efforts(config: dict[str, Any], points: str | Path) -> dict[str, float]:
+    """Raise the efforts of a merged config, in place, to those of the points in a folder, and return these.
+
+    A run of less effort would replace what was paid for. Raises SceneError for efforts that cannot be read.
+    """
+    return raise_efforts(config, read_efforts(Path(points)))
+
+
+def raise_efforts(config: dict[str, Any], efforts: Mapping[str, float]) -> dict[str, float]:
+    """Raise the efforts of experiments of a merged config, in place, and return those that changed."""
+    raised = {name: effort for name, effort in efforts.items() if effort > effort_of(config, name)}
+    for name, effort in raised.items():
+        config["experiments"][name]["effort"] = effort
+    return raised
+
+
+def effort_of(config: dict[str, Any], experiment: str) -> float:
+    """Return the effort of an experiment; inf if the config does not state it as a number."""
+    experiments = config.get("experiments")
+    block = experiments.get(experiment) if isinstance(experiments, dict) else None
+    effort = block.get("effort", config.get("effort", 1.0)) if isinstance(block, dict) else None
+    return effort if isinstance(effort, int | float) else math.inf
+
+
+def read_efforts(points: Path) -> dict[str, float]:
+    """Return the effort of each experiment with points in a folder.
+
+    Raises SceneError.
+    """
+    file = points / EFFORTS
+    content = _read_mapping(file) if file.exists() else {}
+    for name, effort in content.items():
+        try:
+            require(positive("", maximum=100), effort, str(name))
+        except SceneError as error:
+            raise SceneError(error.key, error.value, error.rule, str(file)) from None
+    return content
+
+
+def write_efforts(points: Path, efforts: Mapping[str, float]) -> None:
+    """Write the efforts of experiments with points in a folder; those of others stay."""
+    efforts = dict(sorted((read_efforts(points) | dict(efforts)).items()))
+    points.mkdir(parents=True, exist_ok=True)
+    with whole_file(points / EFFORTS) as partial:
+        partial.write_text(dump_yaml(efforts), encoding="utf-8")
 
 
 def _read_mapping(file: Path) -> dict[str, Any]:
@@ -224,6 +276,7 @@ def open_config(path: str | Path) -> Iterator[tuple[dict[str, Any], dict[str, di
     folder = files[-1].parent
     with chdir(folder.parent if folder.name == "config" else folder):
         try:
+            keep_efforts(merged, str(merged.get("points")))
             planned = check(merged, files)
         except SceneError as error:
             raise error if "experiments" in merged else explain_error(error, merged, False) from None

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import csv
 import math
+import statistics
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gaspart import theory
-from gaspart.accuracy import speed, table
-from gaspart.accuracy.advisers import adviser_of, timed_as
+from gaspart.accuracy import table
+from gaspart.accuracy.advisers import adviser_of, candidate_engines, timed_as
 from gaspart.errors import SceneError
 from gaspart.files import whole_file
 from gaspart.reproduction import job_time, registry
@@ -19,7 +22,11 @@ from gaspart.reproduction.claims.judging import Claim, judge, sufficient
 from gaspart.reproduction.config import open_config
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.gas import Gas
+from gaspart.scene.container import Container
+from gaspart.scene.facts import Gas
+from gaspart.scene.scene import Scene
+from gaspart.scene.species import Species
+from gaspart.simulation import Simulation
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,7 +91,7 @@ def _speed(gas: Gas, engine: str, precision: str) -> float:
     """Return the relative speed at the nearest power of ten of the particle number. Only these particle
     numbers were timed.
     """
-    return speed.factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
+    return speed_factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
 
 # CPU time that a reproduction used, and the length of the runs that each figure needs. An uncertainty falls
@@ -162,10 +169,14 @@ def budgets(path: str | Path) -> list[Budget]:
     return sorted(rows, key=lambda row: -row.seconds)
 
 
-def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
-    """Return the lines of `gaspart budget` for a config. If `target` is a CSV file, the budget is written to
-    this file, a line for each claim. Raises the same errors as `budgets`.
+def lines(path: str | Path, target: str | Path | None = None, progress: bool = False) -> list[str]:
+    """Return the lines of `gaspart budget` for a config: budgets, or the progress of the workflow.
+
+    If `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same
+    errors as `budgets`.
     """
+    if progress:
+        return _progress(path)
     rows = budgets(path)
     if target is not None:
         _write(rows, target)
@@ -177,6 +188,43 @@ def lines(path: str | Path, target: str | Path | None = None) -> list[str]:
         text.append(f"{row.figure:26s} {row.seconds:8.1f} {row.shared:8.1f}  {counted} {length:>22s}")
         text += [f"    {need.multiple:8.2g} times: {need.claim}" for need in row.needs if need.multiple > 1.0]
     return text
+
+
+def _progress(path: str | Path) -> list[str]:
+    """Return a line for each figure: its points that are made and left, and the CPU time of those left.
+
+    The time of a point is that of its experiment's other points, or the predicted one; or it is unknown.
+    """
+    with open_config(path) as (config, planned):
+        results = Path("results") / (config.get("run") or "")
+        left: dict[tuple[str, str], float] = {}
+        for experiment, points in planned.items():
+            times = {
+                name: _used(results, point) for name, point in points.items() if Path(point.path).exists()
+            }
+            mean = sum(times.values()) / len(times) if times else None
+            for name, point in points.items():
+                if name not in times:
+                    seconds = predicted_seconds(point) if mean is None else mean
+                    left[experiment, name] = math.nan if seconds is None else seconds
+        every = shown_points(config, planned)
+    text = [f"{'figure':26s} {'points':>8s} {'left':>6s} {'CPU s left':>12s}"]
+    rows = {"all": [*{point: None for points in every.values() for point in points}], **every}
+    for figure, points in rows.items():
+        missing = [left[point] for point in points if point in left]
+        known = sum(seconds for seconds in missing if not math.isnan(seconds))
+        unknown = sum(map(math.isnan, missing))
+        more = f", and {unknown} points of unknown time" if unknown else ""
+        text.append(f"{figure:26s} {len(points):8d} {len(missing):6d} {known:12.0f}{more}")
+    return text
+
+
+def _used(results: Path, point: Point) -> float:
+    """Return the CPU time of the job of a point that is made; 0 if its log is gone."""
+    try:
+        return point_seconds(results, (point.experiment, point.name))
+    except SceneError:
+        return 0.0
 
 
 def _write(rows: Sequence[Budget], target: str | Path) -> None:
@@ -233,3 +281,37 @@ def _needs(stated: Sequence[Claim]) -> tuple[Need, ...]:
         if is_decided_by_runs(claim) and math.isfinite(multiple):
             needs.append(Need(claim.claim, verdict, claim.required, claim.measured.error, multiple))
     return tuple(sorted(needs, key=lambda need: -need.multiple))
+
+
+# Speed of this machine relative to the machine of the table.
+
+
+_LEAST, _MOST = 500, 100_000  # particles in a timed run
+_GROWTH = 0.15  # growth exponent of the time per contact with N, beyond the processor cache
+_CONTACTS = 2e4
+
+
+@cache
+def speed_factor(dimension: int, engine: str, precision: str, count: int) -> float:
+    """Measure the CPU time of a contact on this machine, divided by the table's time. The reference gas of
+    the engine (`timed_at`) is simulated and timed three times with `count` particles, after a short run from
+    a lattice. `engine` is the engine's name in the table.
+    """
+    growth = max(1.0, count / _MOST) ** _GROWTH
+    count = min(max(count, _LEAST), _MOST)
+    timed = next(candidate for candidate in candidate_engines() if timed_as(candidate) == engine)
+    fraction, step = adviser_of(timed).timed_at
+    side = (count * theory.particle_volume(dimension) / fraction) ** (1.0 / dimension)
+    particles = Species(count, 0.5, temperature=1.0, arrangement="lattice")
+    gas = Scene(Container((side,) * dimension, boundary="periodic"), species=(particles,))
+    rate = float(theory.collision_rate(fraction, dimension))
+    run = Simulation(gas, adviser_of(timed).at_step(gas, step, precision), seed=1)
+    run.advance(duration=1.0 / rate)
+    stretch = 2.0 * max(_CONTACTS, 0.5 * count) / (count * rate)
+    seconds = []
+    for _ in range(3):
+        before, start = run.time, time.process_time()
+        run.advance(duration=stretch)
+        seconds.append((time.process_time() - start) / (0.5 * count * rate * (run.time - before)))
+    table_seconds = table.seconds(dimension, fraction, engine, precision, step)
+    return growth * statistics.median(seconds) / table_seconds if math.isfinite(table_seconds) else math.inf

@@ -15,13 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gaspart.errors import SceneError
-from gaspart.files import whole_file
 from gaspart.reproduction.claims.judging import sufficient
-from gaspart.reproduction.config import open_config
+from gaspart.reproduction.config import effort_of, open_config, write_efforts
 from gaspart.reproduction.cost import claims_of, is_decided_by_runs, point_seconds
 from gaspart.reproduction.points.points import all_points, points
 from gaspart.reproduction.table import MADE_OF
-from gaspart.yaml_text import dump_yaml, read_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,22 +41,16 @@ class Open:
     effort: float
 
 
-def decide(path: str | Path, target: str | Path, effort: float | None = None) -> list[str]:
-    """Write the efforts of the next runs to the file `target`, and return lines that say which and how long.
-    `path` is the config of a finished run, `target` a config with the efforts of experiments, which is laid
-    over it. `effort` is that of the run, unless these files state it. Without a claim that more effort could
-    decide nothing is written, and the list is empty. Raises SceneError if a figure has not been made.
+def decide(path: str | Path) -> list[str]:
+    """Write the efforts of the next run beside the points, and return lines that say which and how long.
+
+    `path` is the config of a finished run. Without a claim that more effort could decide nothing is written,
+    and the list is empty. Raises SceneError if a figure has not been made.
     """
     import xarray as xr
 
-    target = Path(target).resolve()
     with open_config(path) as (config, _):
-        content = read_yaml(target) if target.exists() else {}
-        efforts = {name: block["effort"] for name, block in content.get("experiments", {}).items()}
-        config["effort"] = content.get("effort", effort or config.get("effort", 1.0))
-        for experiment, own in efforts.items():
-            config["experiments"][experiment]["effort"] = own
-        present = {name: efforts.get(name, config["effort"]) for name in config["experiments"]}
+        present = {name: effort_of(config, name) for name in config["experiments"]}
         results = Path("results") / (config.get("run") or "")
         undecided: list[Open] = []
         for figure, block in config["figures"].items():
@@ -70,10 +62,7 @@ def decide(path: str | Path, target: str | Path, effort: float | None = None) ->
         if not chosen:
             return []
         lines = _describe(config, chosen, present, undecided, results)
-        with whole_file(target) as partial:
-            experiments = {name: {"effort": own} for name, own in sorted({**efforts, **chosen}.items())}
-            text = dump_yaml({"effort": config["effort"], "experiments": experiments})
-            partial.write_text(text, encoding="utf-8")
+        write_efforts(Path(config["points"]), chosen)
     return lines
 
 

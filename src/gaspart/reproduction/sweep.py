@@ -315,9 +315,8 @@ def _point_keys(engine: Engine) -> set[str]:
 
 
 def _settings(scene: Scene, axes: Mapping[str, list], engine: Engine) -> dict[str, Any]:
-    """Return the keys of a point's scene and engine that do not vary.
-
-    If a key of a gas varies, the scene is described by such keys, and must be one species in a container.
+    """Return the keys of a point's scene and engine that do not vary. If a key of a gas varies, the scene is
+    described by such keys, and must be one species in a container.
     """
     settings = {"engine" if key == "name" else key: value for key, value in engine_to_dict(engine).items()}
     varied = next((key for key in axes if key in EXTENTS or key in GAS), None)
@@ -400,10 +399,9 @@ def _require_measurable(names: list[str], points: list[Point]) -> None:
 def make_all(
     points: Sequence[Point], workers: int, overwrite: bool, report: Callable[[Point, str], None]
 ) -> None:
-    """Make the trajectories of all points, and call report(point, reason of a failure or "") for each.
-
-    Points with existing trajectories come first, so that a conflict is found before any run. Raises
-    SceneError for files that cannot be written, or belong to another sweep.
+    """Make the trajectories of all points, and call report(point, reason of a failure or "") for each. Points
+    with existing trajectories come first, so that a conflict is found before any run. Raises SceneError for
+    files that cannot be written, or belong to another sweep.
     """
     ordered = sorted(points, key=lambda point: not Path(point.path).exists())
     if workers == 1:

@@ -33,10 +33,9 @@ class SweepTable(ByFace):
     def plot(  # type: ignore[override]
         self, observable: str | None = None, along: str | None = None, axis: Axes | None = None
     ) -> Axes:
-        """Draw an observable with bars of one standard deviation, and theory as black lines.
-
-        There is one curve for each value of the other dimensions. The theory is known at the points of the
-        sweep, which lines join.
+        """Draw an observable with bars of one standard deviation, and theory as black lines. There is one
+        curve for each value of the other dimensions. The theory is known at the points of the sweep, which
+        lines join.
         """
         import matplotlib.pyplot as plt
 

@@ -130,13 +130,9 @@ def table(
 ) -> xr.Dataset:
     """Return a data set with a row for each point; row(point, *rest) returns the columns. An Estimate `name`
     becomes the variables `name`, `name`_error and `name`_freedom. A pair of value and error becomes the first
-    two.
-
-    inner, units : see `from_rows`.
-    of : points of each row, if `points` do not determine them.
-
-    If rows are made from points of a grid (see `made_of`), the variable `over`_made_of has their experiments
-    and names, a line for each.
+    two. `inner` and `units`: see `from_rows`. `of`: points of each row, if `points` do not determine them. If
+    rows are made from points of a grid (see `made_of`), the variable `over`_made_of has their experiments and
+    names, a line for each.
     """
     rows = [_spread(row(point, *rest)) for point in points]
     named = ["\n".join(made_of(item)) for item in (points if of is None else of)]
@@ -155,13 +151,9 @@ def made_of(value: Any) -> list[str]:
 
 
 def each(rows: Table, claim: str, form: Callable[..., Claim] = Claim, **stated: Any) -> list[Claim]:
-    """Return a claim about each row.
-
-    form : function that makes the claim, such as `Claim.at_most`.
-    stated : arguments of this function.
-
-    Texts may name columns, as in "Z at {packing_fraction:.2g}". Lists, arrays and estimates of arrays must
-    have one element for each row. Otherwise ValueError is raised.
+    """Return a claim about each row. `form`: function that makes the claim, such as `Claim.at_most`.
+    `stated`: arguments of this function. Texts may name columns, as in "Z at {packing_fraction:.2g}". Lists,
+    arrays and estimates of arrays must have one element for each row. Otherwise ValueError is raised.
     """
     claims = []
     for n, row in enumerate(rows):
@@ -207,14 +199,11 @@ def from_rows(
     inner: Inner = (),
     units: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
-    """Return a variable over the dimension `over` for each key of the rows.
-
-    inner : further dimensions of arrays, either the same for all, or by key.
-    units : units by key; "1" for other keys. By default no units are stated.
-
-    Shorter arrays are padded with NaN. Missing entries of a row are NaN. A key with the suffix _error has the
-    dimensions and the unit of the key without the suffix. A key with the suffix _freedom has the same
-    dimensions.
+    """Return a variable over the dimension `over` for each key of the rows. `inner`: further dimensions of
+    arrays, either the same for all, or by key. `units`: units by key; "1" for other keys. By default no units
+    are stated. Shorter arrays are padded with NaN. Missing entries of a row are NaN. A key with the suffix
+    _error has the dimensions and the unit of the key without the suffix. A key with the suffix _freedom has
+    the same dimensions.
     """
     columns = {}
     for name in dict.fromkeys(name for row in rows for name in row):
@@ -229,10 +218,8 @@ def from_rows(
 
 def entries(numbers: Mapping[str, Estimate | tuple[Any, Any]], freedom: int | None = None) -> dict[str, Any]:
     """Return the entries of a row for numbers with uncertainties. The entries are `name`, `name`_error, and
-    `name`_freedom.
-
-    numbers : by name, an Estimate, or a value and its error; numbers or arrays.
-    freedom : degrees of freedom for values with errors; without it they have no such entry.
+    `name`_freedom. `numbers`: by name, an Estimate, or a value and its error; numbers or arrays. `freedom`:
+    degrees of freedom for values with errors; without it they have no such entry.
     """
     row: dict[str, Any] = {}
     for name, number in numbers.items():

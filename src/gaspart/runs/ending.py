@@ -116,9 +116,8 @@ def contents_until(
     until: Until, scene: Scene, engine: Engine, contents: Contents, from_state: bool
 ) -> Contents:
     """Return the contents of a file, with displacements if a requested accuracy needs them. Raises SceneError
-    for an accuracy that this run cannot measure or can never reach.
-
-    from_state : True if the run starts from a prescribed state.
+    for an accuracy that this run cannot measure or can never reach. `from_state`: True if the run starts from
+    a prescribed state.
     """
     for requirement in until.accuracies:
         require_measurable(requirement, scene, engine, contents)

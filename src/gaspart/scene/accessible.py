@@ -195,9 +195,8 @@ class Accessible:
         return self._measure(radius, None)
 
     def areas(self, radii: np.ndarray) -> np.ndarray:
-        """Return the areas (2D: lengths) of faces that are accessible to particle centres.
-
-        radii : radii of particles, shape (K,). The result has the shape (K, 2d).
+        """Return the areas (2D: lengths) of faces that are accessible to particle centres. `radii`: radii of
+        particles, shape (K,). The result has the shape (K, 2d).
         """
         scene, faces = self._scene, range(2 * self._scene.dimension)
         if self._fixed or scene.walls:
@@ -277,8 +276,7 @@ def free_fraction(
 ) -> float:
     """Return the mean fraction of the length of `LINES` lines that is outside all bodies. The lines are
     parallel to the first of the `axes`. They are evenly spread over the other axes, and shifted at random.
-
-    shift : index of the random shift.
+    `shift`: index of the random shift.
     """
     (lower, upper), across = ends, axes[1:]
     steps = SPREADING[len(across)] ** -np.arange(1.0, len(across) + 1)

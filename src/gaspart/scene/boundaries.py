@@ -48,8 +48,7 @@ def flow(scene: Composition, positions: np.ndarray) -> np.ndarray:
 
 def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np.ndarray:
     """Return the velocity (..., d) of a uniform shear flow at positions. Without a `rate`, the velocity is 0.
-
-    height : side of the container along the gradient.
+    `height`: side of the container along the gradient.
     """
     import numpy as np  # planning a workflow needs the rest of this module, but not this import
 
@@ -61,9 +60,8 @@ def flow_of_rate(rate: float | None, height: float, positions: np.ndarray) -> np
 
 def piston_end(scene: Composition, position: float | None = None) -> float:
     """Return the time at which a piston of prescribed speed compresses the particles to closest packing. The
-    result is infinite if the scene has no such piston.
-
-    position : position along the axis of the piston at time 0. Default: the side of the container.
+    result is infinite if the scene has no such piston. `position`: position along the axis of the piston at
+    time 0. Default: the side of the container.
     """
     for number, face in scene.pistons:
         if face.speed is not None:

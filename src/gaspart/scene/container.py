@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from gaspart.errors import SceneError
-from gaspart.keys import POSITIVE, declare, describe, set_fields, validate
+from gaspart.keys import POSITIVE, declare, describe, documented, set_fields, validate
 from gaspart.keys.values import finite_vector, one_of, positive_number
 
 BOUNDARIES = ("wall", "periodic")
@@ -23,16 +23,10 @@ def _lengths(name: str, value: Any) -> tuple[float, ...]:
     return tuple(positive_number(name, length) for length in finite_vector(name, value))
 
 
+@documented
 @dataclass(frozen=True)
 class Container:
     """The simulated volume [0, L] on each axis, in two or three dimensions.
-
-    Parameters
-    ----------
-    lengths : sequence of float, shape (d,), [length]
-        Side lengths. Their number, 2 or 3, is the dimension.
-    boundary : {"wall", "periodic"} or sequence of these, shape (d,), default "wall"
-        One boundary condition for all axes, or one for each axis.
 
     Raises
     ------
@@ -48,11 +42,17 @@ class Container:
     """
 
     lengths: tuple[float, ...] = field(
-        metadata=declare(describe({**_PER_AXIS, "items": POSITIVE}, "(d,) side lengths", _lengths))
+        metadata=declare(
+            describe(
+                {**_PER_AXIS, "items": POSITIVE},
+                "(d,) side lengths [length]; their number, 2 or 3, is the dimension",
+                _lengths,
+            )
+        )
     )
     boundary: str | tuple[str, ...] = field(
         default="wall",
-        metadata=declare(describe(_BOUNDARY, "of all axes, or one per axis")),
+        metadata=declare(describe(_BOUNDARY, "one for all axes, or one for each axis")),
     )
 
     def __post_init__(self) -> None:

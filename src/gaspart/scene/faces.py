@@ -11,6 +11,7 @@ from gaspart.keys import (
     choice,
     declare,
     describe,
+    documented,
     from_mapping,
     not_negative,
     positive,
@@ -30,30 +31,20 @@ FLOW, GRADIENT = 0, 1
 """Axis of the flow of a sheared gas, and axis of its gradient."""
 
 
+@documented
 @dataclass(frozen=True)
 class Vibrating(Surface):
     """A hard wall with a prescribed vibration, which gives energy to particles or takes it.
 
-    Parameters
-    ----------
-    amplitude : float, [length]
-        Amplitude A: half of the distance between the two turning points of the wall.
-    period : float, [time]
-        Duration of one vibration.
-    waveform : {"sine", "sawtooth"}, default "sine"
-        Displacement as a function of time.
+    The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
+    sine has the inward displacement A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A
+    / period. At the end of each period it returns instantaneously. Contacts follow the collision law of the
+    scene in the frame of the wall.
 
     Raises
     ------
     SceneError
         If a value is invalid.
-
-    Notes
-    -----
-    The wall is at the side of the container at time 0, and moves inwards from this side by at most 2 A. The
-    sine has the inward displacement A (1 - cos(2 pi t / period)). The sawtooth moves inwards at the speed 2 A
-    / period. At the end of each period it returns instantaneously. Contacts follow the collision law of the
-    scene in the frame of the wall.
 
     Examples
     --------
@@ -63,9 +54,13 @@ class Vibrating(Surface):
     array([0. , 0.2])
     """
 
-    amplitude: float = field(metadata=declare(positive("half the distance that the wall moves")))
-    period: float = field(metadata=declare(positive("duration of one vibration")))
-    waveform: str = field(default="sine", metadata=declare(choice("how the wall moves", *WAVEFORMS)))
+    amplitude: float = field(
+        metadata=declare(positive("amplitude A [length], half the distance that the wall moves"))
+    )
+    period: float = field(metadata=declare(positive("duration of one vibration [time]")))
+    waveform: str = field(
+        default="sine", metadata=declare(choice("displacement as a function of time", *WAVEFORMS))
+    )
 
     kind: ClassVar[str] = "vibrating"
     moves: ClassVar[bool] = True
@@ -100,6 +95,7 @@ class _HasContainer(Protocol):
     def container(self) -> Container: ...
 
 
+@documented
 @dataclass(frozen=True)
 class Piston(Surface):
     """A smooth wall that particles and an external pressure move, or that has a constant speed.
@@ -107,32 +103,17 @@ class Piston(Surface):
     In a scene with a piston, all particles must be smooth and elastic, and there must be no fixed particles
     or interior walls.
 
-    Parameters
-    ----------
-    mass : float, [mass], optional
-        Mass of the piston. Requires `pressure`.
-    pressure : float, [energy/length^d], optional
-        Constant external pressure (force divided by area), which pushes the piston inwards. Requires `mass`.
-    speed : float, [length/time], optional
-        Prescribed inward speed, which hits do not change. Cannot be combined with `mass` and `pressure`.
+    The piston starts at the side of the container. With a mass and a pressure it starts at rest. The side is
+    its outermost position, where it bounces back without loss. The sum of three energies is conserved: the
+    kinetic energy of the piston, `pressure` times the volume, and the energy of the particles. A light piston
+    samples the ensemble of constant pressure and enthalpy (H. C. Andersen, J. Chem. Phys. 72, 2384 (1980)),
+    and a heavy one compresses a gas adiabatically. A piston with a prescribed speed compresses a gas if it is
+    slow and drives a shock if it is fast. The work of the piston becomes energy of the particles.
 
     Raises
     ------
     SceneError
         Unless the piston has either both `mass` and `pressure`, or only `speed`.
-
-    Notes
-    -----
-    The piston starts at the side of the container. With a mass and a pressure it starts at rest. The side is
-    its outermost position, where it bounces back without loss. The sum of three energies is conserved: the
-    kinetic energy of the piston, `pressure` times the volume, and the energy of the particles. A light piston
-    samples the ensemble of constant pressure and enthalpy [1]_, and a heavy one compresses a gas
-    adiabatically. A piston with a prescribed speed compresses a gas if it is slow and drives a shock if it is
-    fast. The work of the piston becomes energy of the particles.
-
-    References
-    ----------
-    .. [1] H. C. Andersen, J. Chem. Phys. 72, 2384 (1980).
 
     Examples
     --------
@@ -144,15 +125,22 @@ class Piston(Surface):
     """
 
     mass: float | None = field(
-        default=None, metadata=declare(positive("mass of the piston, with a pressure"))
+        default=None, metadata=declare(positive("mass of the piston [mass], with a pressure"))
     )
     pressure: float | None = field(
         default=None,
-        metadata=declare(not_negative("external pressure: the force on the piston over its area")),
+        metadata=declare(
+            not_negative(
+                "external pressure that pushes the piston inwards [energy/length^d] (force over "
+                "area), with a mass"
+            )
+        ),
     )
     speed: float | None = field(
         default=None,
-        metadata=declare(positive("speed at which it moves inwards, instead of a mass and a pressure")),
+        metadata=declare(
+            positive("inward speed [length/time], which hits do not change, instead of a mass and a pressure")
+        ),
     )
 
     kind: ClassVar[str] = "piston"
@@ -177,6 +165,7 @@ class Piston(Surface):
         return (-1.0 if number % 2 else 1.0) * (self.speed or 0.0)
 
 
+@documented
 @dataclass(frozen=True)
 class Open(Surface):
     """An opening as wide as the face, through which particles leave, and enter from a reservoir.
@@ -185,25 +174,6 @@ class Open(Surface):
     reservoir enter through the face, and the scene must have `centres_to_walls`. Otherwise there is a vacuum
     outside, and the container may have interior walls. The scene must have one species.
 
-    Parameters
-    ----------
-    activity : float, [1], optional
-        Activity eta exp(mu_excess / k_B T) of the reservoir; eta is its packing fraction, and mu_excess its
-        excess chemical potential. Requires `temperature`. Default: a vacuum.
-    temperature : float, [energy], optional
-        Temperature k_B T of the reservoir. Requires `activity`.
-
-    Raises
-    ------
-    SceneError
-        If a value is invalid, or only one of `activity` and `temperature` is given.
-
-    See Also
-    --------
-    gaspart.theory.activity : Activity of a gas of a packing fraction.
-
-    Notes
-    -----
     The reservoir is a gas at rest. In the dilute limit its activity is eta. Let z be the number density that
     is equivalent to the activity. The reservoir sends z (k_B T / 2 pi m)^(1/2) particles per area and time,
     uniformly over the face, with the velocities of particles that pass a plane in one direction. An arriving
@@ -215,6 +185,15 @@ class Open(Surface):
 
     The Boltzmann model of the DSMC engine has no excluded volume, so that it rejects no particle: in this
     model the reservoir is an ideal gas with the packing fraction `activity`.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or only one of `activity` and `temperature` is given.
+
+    See Also
+    --------
+    gaspart.theory.activity : Activity of a gas of a packing fraction.
 
     Examples
     --------
@@ -231,10 +210,13 @@ class Open(Surface):
     """
 
     activity: float | None = field(
-        default=None, metadata=declare(positive("of the reservoir outside; without it a vacuum"))
+        default=None,
+        metadata=declare(
+            positive("activity eta exp(mu_excess / k_B T) of the reservoir outside; without it a vacuum")
+        ),
     )
     temperature: float | None = field(
-        default=None, metadata=declare(positive("of the reservoir, which has an activity too"))
+        default=None, metadata=declare(positive("temperature of the reservoir [energy], with an activity"))
     )
 
     kind: ClassVar[str] = "open"
@@ -254,33 +236,24 @@ class Open(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
+@documented
 @dataclass(frozen=True)
 class LeesEdwards(Surface):
     """Pair of periodic faces whose images slide, for shear flow without walls.
 
     The mean velocity of the gas is u_x = shear_rate (y - L_y / 2).
 
-    Parameters
-    ----------
-    shear_rate : float, [1/time]
-        Gradient of the flow, du_x / dy.
+    The boundary condition was introduced by Lees and Edwards (A. W. Lees and S. F. Edwards, J. Phys. C 5,
+    1921 (1972)). It must be set for y_high of a container that is periodic along all axes, and then applies
+    to y_low, too. A particle that leaves at y_high at time t enters at y_low. Its x is then displaced by
+    -shear_rate L_y t, and its v_x is reduced by shear_rate L_y. For a particle that leaves at y_low the signs
+    are reversed. The initial velocities are the sum of the velocity of the flow and random velocities with
+    mean 0. The faces do work, which heats an elastic gas.
 
     Raises
     ------
     SceneError
         If the shear rate is not a finite number.
-
-    Notes
-    -----
-    The boundary condition was introduced by Lees and Edwards [1]_. It must be set for y_high of a container
-    that is periodic along all axes, and then applies to y_low, too. A particle that leaves at y_high at time
-    t enters at y_low. Its x is then displaced by -shear_rate L_y t, and its v_x is reduced by shear_rate L_y.
-    For a particle that leaves at y_low the signs are reversed. The initial velocities are the sum of the
-    velocity of the flow and random velocities with mean 0. The faces do work, which heats an elastic gas.
-
-    References
-    ----------
-    .. [1] A. W. Lees and S. F. Edwards, J. Phys. C 5, 1921 (1972).
 
     Examples
     --------
@@ -290,7 +263,7 @@ class LeesEdwards(Surface):
     0.5
     """
 
-    shear_rate: float = field(metadata=declare(real("gradient of the flow, du_x / dy")))
+    shear_rate: float = field(metadata=declare(real("gradient of the flow [1/time], du_x / dy")))
 
     kind: ClassVar[str] = "lees_edwards"
     moves: ClassVar[bool] = True

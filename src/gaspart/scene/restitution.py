@@ -5,29 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from gaspart.errors import SceneError
-from gaspart.keys import declare, in_range, not_negative, positive, validate
+from gaspart.keys import declare, documented, in_range, not_negative, positive, validate
 
 
+@documented
 @dataclass(frozen=True)
 class Restitution:
     """Effect of a contact on the relative velocity of the two surfaces (Spencer 2022, Eq. 22).
-
-    Parameters
-    ----------
-    normal : float, default 1.0, [1]
-        Coefficient of normal restitution e_n, from 0 (no rebound) to 1 (elastic). A contact multiplies the
-        normal component of the relative velocity by -e_n.
-    tangential : float, default -1.0, [1]
-        Coefficient of tangential restitution e_t, from -1 (perfectly smooth) to 1 (perfectly rough). A
-        contact multiplies the tangential components of the relative velocity by -e_t.
-    contact_duration : float, [time], optional
-        Duration t_c of a contact. A contact of a particle less than t_c after its last contact is elastic.
-        With t_c = 0 no contact becomes elastic. Default: under gravity 0.01 times the time scale of a fall
-        through the smallest diameter; without gravity 0.
-    reference_speed : float, [length/time], optional
-        Makes the particles viscoelastic: `normal` is then the coefficient for two particles of the first
-        species that approach each other at this normal speed. Slower contacts lose a smaller fraction of
-        their energy.
 
     Raises
     ------
@@ -46,7 +30,10 @@ class Restitution:
         default=1.0,
         metadata=declare(
             in_range(
-                "the normal part is multiplied by minus this: from 0 (they stick) to 1 (elastic)", 0.0, 1.0
+                "coefficient e_n: a contact multiplies the normal relative velocity by -e_n; 0 (no "
+                "rebound) to 1 (elastic)",
+                0.0,
+                1.0,
             )
         ),
     )
@@ -54,7 +41,10 @@ class Restitution:
         default=-1.0,
         metadata=declare(
             in_range(
-                "likewise the tangential part: from -1 (perfectly smooth) to 1 (perfectly rough)", -1.0, 1.0
+                "coefficient e_t: likewise the tangential components; -1 (perfectly smooth) to 1 "
+                "(perfectly rough)",
+                -1.0,
+                1.0,
             )
         ),
     )
@@ -63,8 +53,9 @@ class Restitution:
         default=None,
         metadata=declare(
             not_negative(
-                "a contact of a particle less than this after its last one is elastic; 0: none is; default: "
-                "under gravity 0.01 of the time scale of a fall through the smallest diameter, else 0"
+                "duration t_c [time]: a contact of a particle less than t_c after its last one is "
+                "elastic; 0: none is; default: under gravity 0.01 of the time scale of a fall through"
+                " the smallest diameter, else 0"
             )
         ),
     )
@@ -73,8 +64,9 @@ class Restitution:
         default=None,
         metadata=declare(
             positive(
-                "with it particles are viscoelastic: `normal` is the restitution of two particles of the "
-                "first species that approach at this normal speed; slower contacts take less"
+                "with it particles are viscoelastic [length/time]: `normal` is the coefficient of two"
+                " particles of the first species that approach at this normal speed; slower contacts "
+                "lose less"
             )
         ),
     )
@@ -87,26 +79,12 @@ class Restitution:
 
     @property
     def smooth_and_elastic(self) -> bool:
-        """True if contacts are the same as in a scene without a `Restitution`.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution().smooth_and_elastic
-        True
-        """
+        """True if contacts are the same as in a scene without a `Restitution`."""
         return self.normal == 1.0 and self.tangential == -1.0
 
     @property
     def dissipative(self) -> bool:
-        """True if contacts may lose energy.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=1.0).dissipative  # perfectly rough spheres keep their energy
-        False
-        """
+        """True if contacts may lose energy."""
         return self.normal < 1.0 or -1.0 < self.tangential < 1.0
 
     def refuse_loss(self, rule: str) -> None:
@@ -121,13 +99,6 @@ class Restitution:
         ------
         SceneError
             If contacts lose energy. The message names the coefficient by which they lose it.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).refuse_loss("loses energy")
-        Traceback (most recent call last):
-        gaspart.errors.SceneError: restitution.tangential = 0.5: loses energy
         """
         if self.dissipative:
             key = "normal" if self.normal < 1.0 else "tangential"
@@ -135,45 +106,27 @@ class Restitution:
 
     @property
     def rough(self) -> bool:
-        """True if contacts change spins.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Restitution(tangential=0.5).rough
-        True
-        """
+        """True if contacts change spins."""
         return self.tangential > -1.0
 
 
+@documented
 @dataclass(frozen=True)
 class Thermostat:
     """Random kicks of all particles at regular times.
 
-    The kicks add energy, so that a dissipative gas can reach a steady state [1]_.
+    The kicks add energy, so that a dissipative gas can reach a steady state (D. R. M. Williams and F. C.
+    MacKintosh, Phys. Rev. E 54, R9 (1996)).
 
-    Parameters
-    ----------
-    power : float, [energy/time]
-        Mean energy that each particle receives per unit of time.
-    interval : float, [time]
-        Time between kicks. It should be short compared with the time between contacts.
-
-    Raises
-    ------
-    SceneError
-        If a value is not positive.
-
-    Notes
-    -----
     At each multiple of `interval`, a normal random number is added to every velocity component of a particle
     of mass m. Its variance is 2 power interval/(d m). Then the same velocity is subtracted from all
     particles, so that the total momentum is conserved. For short intervals this is white noise of strength
     xi_0^2 = 2 power/(d m).
 
-    References
-    ----------
-    .. [1] D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996).
+    Raises
+    ------
+    SceneError
+        If a value is not positive.
 
     Examples
     --------
@@ -189,9 +142,11 @@ class Thermostat:
     0.1
     """
 
-    power: float = field(metadata=declare(positive("mean energy per time that a particle is given")))
+    power: float = field(
+        metadata=declare(positive("mean energy per time that a particle is given [energy/time]"))
+    )
     interval: float = field(
-        metadata=declare(positive("time between kicks: short compared with that between contacts"))
+        metadata=declare(positive("time between kicks [time]: short compared with that between contacts"))
     )
 
     def __post_init__(self) -> None:

@@ -19,6 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.keys import (
     declare,
     describe,
+    documented,
     field_values,
     flag,
     from_mapping,
@@ -60,6 +61,7 @@ DRAWN = 20_000
 _ABSENT = ("fixed", "exact_temperature", "walls", "faces")
 
 
+@documented
 @dataclass(frozen=True)
 class Scene(Facts):
     """The system to simulate: a container, its particles and everything that acts on them.
@@ -67,27 +69,9 @@ class Scene(Facts):
     A scene is immutable and is validated when it is created. In all arrays the single `particles` come first,
     in their order, followed by the particles of each of the `species`.
 
-    Parameters
-    ----------
-    container : Container
-        The simulated volume and its boundary conditions.
-    species : sequence of Species, optional
-        Particles that the program places.
-    particles : sequence of Particle, optional
-        Particles at given positions.
-    centres_to_walls : bool, default False
-        Walls stop the centres of particles instead of their surfaces [1]_.
-    gravity : sequence of float, shape (d,), [length/time^2], optional
-        Uniform acceleration. Along a periodic axis it drives a flow.
-    restitution : Restitution, optional
-        Collision law of all contacts. Default: elastic and smooth.
-    walls : sequence of Wall (2D) or Plate (3D), optional
-        Walls inside the container.
-    faces : dict of str to face, optional
-        Kinds of faces of the container by name: "x_low", "x_high", "y_low" ... Default: hard or periodic,
-        according to the `container`.
-    thermostat : Thermostat, optional
-        Random kicks of all particles. Default: none.
+    Units of length and time are free; masses are relative to the reference species; k_B = 1.
+
+    Literature: R. Frederickx and P. Meerts (2010), whose spheres stick out of the container.
 
     Raises
     ------
@@ -98,14 +82,6 @@ class Scene(Facts):
     --------
     Simulation : Simulate a scene in memory.
     run : Simulate a scene and write a trajectory.
-
-    Notes
-    -----
-    Units of length and time are free; masses are relative to the reference species; k_B = 1.
-
-    References
-    ----------
-    .. [1] R. Frederickx and P. Meerts (2010), whose spheres stick out of the container.
 
     Examples
     --------
@@ -135,7 +111,9 @@ class Scene(Facts):
     )
     gravity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declare(vector("(d,) uniform acceleration; along a periodic axis it drives a flow")),
+        metadata=declare(
+            vector("(d,) uniform acceleration; along a periodic axis it drives a flow [length/time^2]")
+        ),
     )
     restitution: Restitution | None = field(
         default=None,
@@ -147,7 +125,13 @@ class Scene(Facts):
     faces: dict[str, Surface] = field(
         default_factory=dict,
         hash=False,
-        metadata=declare(describe(FACES_SCHEMA, "kinds of the container's faces; others are hard")),
+        metadata=declare(
+            describe(
+                FACES_SCHEMA,
+                "kinds of faces by name, `x_low`, `x_high`, `y_low` ...; others are hard or periodic,"
+                " as the container states",
+            )
+        ),
     )
 
     thermostat: Thermostat | None = field(
@@ -380,13 +364,6 @@ class Scene(Facts):
         ------
         SceneError
             If the file cannot be written.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Scene(gp.Container((9.0, 9.0))).to_file("empty.yaml")
-        >>> print(open("empty.yaml").read().splitlines()[0])
-        container:
         """
         write_yaml(path, self.to_dict())
 

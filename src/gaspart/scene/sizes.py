@@ -123,9 +123,8 @@ def _log(x: np.ndarray) -> np.ndarray:
 
 
 def normal_quantile(p: np.ndarray) -> np.ndarray:
-    """Return the quantile of the standard normal distribution, by Wichura's AS 241.
-
-    p : probability in (0, 1).
+    """Return the quantile of the standard normal distribution, by Wichura's AS 241. `p`: probability in (0,
+    1).
     """
     import numpy as np
 

@@ -13,6 +13,7 @@ from gaspart.keys import (
     count,
     declare,
     describe,
+    documented,
     flag,
     in_range,
     not_negative,
@@ -50,12 +51,12 @@ def _radius(name: str, value: object) -> float:
     return positive_number(name, value)
 
 
-_RADIUS = declare(describe(POSITIVE, "radius", _radius))
-_MASS = declare(positive("mass"))
+_RADIUS = declare(describe(POSITIVE, "radius [length]", _radius))
+_MASS = declare(positive("mass [mass]"))
 _MOMENT = declare(
     describe(
         POSITIVE,
-        "moment of inertia; by default that of a uniform disc or sphere",
+        "moment of inertia [mass length^2]; by default that of a uniform disc or sphere",
         lambda name, value: number(name, value, "must be positive", above=0.0),
     )
 )
@@ -73,6 +74,7 @@ def _check_matter(particle: Species | Particle) -> None:
         raise SceneError("vibration", particle.vibration, "requires fixed: true")
 
 
+@documented
 @dataclass(frozen=True)
 class Species:
     """Particles of one kind, whose positions the program chooses.
@@ -81,53 +83,11 @@ class Species:
     have the same `speed`, or a Maxwellian distribution at `temperature`. If neither key is set, the particles
     start at rest.
 
-    Parameters
-    ----------
-    count : int
-        Number of particles.
-    radius : float, [length]
-        Radius; with a `polydispersity`, the mean radius.
-    mass : float, default 1.0, [mass]
-        Mass of each particle. It is the same for all particles, even if their radii differ.
-    speed : float, [length/time], optional
-        Initial speed of every particle. Cannot be combined with `temperature`.
-    temperature : float, [energy], optional
-        Temperature k_B T of the initial velocities. For `fixed` particles it is the temperature of their
-        vibrations.
-    exact_temperature : bool, default False
-        Rescale the initial velocities to exactly `temperature`, after the mean velocity is subtracted along
-        axes on which momentum is conserved. All such species have one factor, so that only their common
-        energy is exact; species that start in separate regions have their own.
-    arrangement : {"random", "lattice", "slab", "compressed"}, default "random"
-        Initial positions. "random": sequential insertion. "lattice": sites of a triangular or face-centred
-        cubic lattice, which all species with this value share; "random" species fill the space between them.
-        "slab": a lattice whose vacancies are all in one half, so that this half melts. "compressed": growth
-        to a density that insertion cannot reach (see `compress`).
-    region : sequence of two vectors, shape (2, d), [length], optional
-        Lower and upper corner of the box in which all particles start. Requires "random". Default: the
-        container.
-    moment_of_inertia : float, [mass length^2], optional
-        Moment of inertia. Default: the value of a uniform disc or sphere.
-    fixed : bool, default False
-        The particles never move: their mass is infinite.
-    vibration : float, [energy], optional
-        Initial vibrational energy of fixed particles. Cannot be combined with `temperature`.
-    polydispersity : float, [1], optional
-        Standard deviation of the radii, divided by their mean. Default: all particles have the same radius.
-    radius_distribution : {"lognormal", "uniform"}, optional
-        Distribution of the radii if there is a `polydispersity`. Default: "lognormal".
+    With `arrangement` "random" particles are inserted one after another. "lattice": sites of a triangular or
+    face-centred cubic lattice, which all species with this value share; "random" species fill the space
+    between them. "slab": a lattice whose vacancies are all in one half, so that this half melts.
+    "compressed": growth to a density that insertion cannot reach (see `compress`).
 
-    Raises
-    ------
-    SceneError
-        If a value is invalid, or two values contradict each other.
-
-    See Also
-    --------
-    Particle : A single particle at a given position.
-
-    Notes
-    -----
     Initial velocities are random: the kinetic temperature of N particles in d dimensions fluctuates about
     `temperature` with the relative standard deviation sqrt(2 / (d N)), unless `exact_temperature` is set.
 
@@ -137,6 +97,15 @@ class Species:
     The N radii of a polydisperse species are the quantiles of the distribution at N equally spaced
     probabilities, in descending order. The radii do not depend on the seed, so every run has the same packing
     fraction.
+
+    Raises
+    ------
+    SceneError
+        If a value is invalid, or two values contradict each other.
+
+    See Also
+    --------
+    Particle : A single particle at a given position.
 
     Examples
     --------
@@ -148,15 +117,24 @@ class Species:
 
     count: int = field(metadata=declare(count("number of particles", 0, maximum=MOST_PARTICLES)))
     radius: float = field(
-        metadata=declare(describe(POSITIVE, "radius; the mean, if there is a polydispersity", _radius))
+        metadata=declare(
+            describe(POSITIVE, "radius [length]; the mean, if there is a `polydispersity`", _radius)
+        )
     )
     _: KW_ONLY
     mass: float = field(default=1.0, metadata=_MASS)
-    speed: float | None = field(default=None, metadata=declare(not_negative("one initial speed for all")))
+    speed: float | None = field(
+        default=None,
+        metadata=declare(
+            not_negative("initial speed of every particle [length/time], instead of `temperature`")
+        ),
+    )
     temperature: float | None = field(
         default=None,
         metadata=declare(
-            not_negative("instead of `speed`: of the initial Maxwellian velocities; of vibrations if fixed")
+            not_negative(
+                "temperature of the initial velocities [energy], or of the vibrations of fixed particles"
+            )
         ),
     )
     exact_temperature: bool = field(
@@ -174,8 +152,8 @@ class Species:
         default=None,
         metadata=declare(
             two_vectors(
-                "two opposite corners, (2, d), of the box in which all its particles start, the lower one "
-                "first; default: the container"
+                "lower and upper corner [length], (2, d), of the box in which all particles start; "
+                "default: the container"
             )
         ),
     )
@@ -184,18 +162,20 @@ class Species:
     vibration: float | None = field(
         default=None,
         metadata=declare(
-            not_negative("of fixed particles, instead of `temperature`: initial energy of vibration")
+            not_negative("initial vibrational energy of fixed particles [energy], instead of `temperature`")
         ),
     )
     polydispersity: float | None = field(
         default=None,
         metadata=declare(
-            in_range("standard deviation of the radii over their mean; by default all are equal", 0.0, 1.0)
+            in_range("standard deviation of the radii over their mean; default: all are equal", 0.0, 1.0)
         ),
     )
     radius_distribution: str | None = field(
         default=None,
-        metadata=declare(choice("of the radii, with a polydispersity; default: lognormal", *DISTRIBUTIONS)),
+        metadata=declare(
+            choice("distribution of the radii, with a `polydispersity`; default: lognormal", *DISTRIBUTIONS)
+        ),
     )
 
     def __post_init__(self) -> None:
@@ -229,26 +209,12 @@ class Species:
 
     @property
     def alike(self) -> bool:
-        """True if all particles have the same radius.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).alike
-        True
-        """
+        """True if all particles have the same radius."""
         return self.polydispersity is None
 
     @property
     def radii(self) -> np.ndarray:
-        """Radii of the particles, shape (count,).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=2, radius=0.5).radii
-        array([0.5, 0.5])
-        """
+        """Radii of the particles, shape (count,)."""
         import numpy as np
 
         if self.polydispersity is None:
@@ -258,26 +224,12 @@ class Species:
 
     @property
     def largest_radius(self) -> float:
-        """Largest radius of a particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> round(gp.Species(count=500, radius=0.5, polydispersity=0.1).largest_radius, 4)
-        0.6772
-        """
+        """Largest radius of a particle."""
         return self.radius if self.alike or not self.count else float(self.radii[0])
 
     @property
     def smallest_radius(self) -> float:
-        """Smallest radius of a particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).smallest_radius
-        0.5
-        """
+        """Smallest radius of a particle."""
         return self.radius if self.alike or not self.count else float(self.radii[-1])
 
     def total_power(self, dimension: int) -> float:
@@ -292,12 +244,6 @@ class Species:
         -------
         float
             The sum, in [length^dimension].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5).total_power(2)
-        2.5
         """
         if self.alike:
             return self.count * self.radius**dimension
@@ -305,14 +251,7 @@ class Species:
 
     @property
     def vibrates(self) -> bool:
-        """True if the particles have a mode of vibration.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5, fixed=True, vibration=1.0).vibrates
-        True
-        """
+        """True if the particles have a mode of vibration."""
         return self.fixed and (self.vibration is not None or self.temperature is not None)
 
     def initial_temperature(self, dimension: int) -> float:
@@ -327,40 +266,16 @@ class Species:
         -------
         float
             The temperature, in [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Species(count=10, radius=0.5, speed=2.0).initial_temperature(2)
-        2.0
         """
         if self.temperature is not None:
             return self.temperature
         return self.mass * (self.speed or 0.0) ** 2 / dimension
 
 
+@documented
 @dataclass(frozen=True)
 class Particle:
     """A single particle at a given position.
-
-    Parameters
-    ----------
-    position : sequence of float, shape (d,), [length]
-        Initial position of the centre.
-    velocity : sequence of float, shape (d,), [length/time]
-        Initial velocity.
-    radius : float, [length]
-        Radius.
-    mass : float, default 1.0, [mass]
-        Mass.
-    spin : float or sequence of float, shape (3,), [1/time], optional
-        Angular velocity: a number in 2D, a vector in 3D. Default: 0.
-    moment_of_inertia : float, [mass length^2], optional
-        Moment of inertia. Default: the value of a uniform disc or sphere.
-    fixed : bool, default False
-        The particle never moves: its mass is infinite.
-    vibration : float, [energy], optional
-        Initial vibrational energy of a fixed particle.
 
     Raises
     ------
@@ -382,19 +297,20 @@ class Particle:
     count: ClassVar[int] = 1
     alike: ClassVar[bool] = True
     position: tuple[float, ...] = field(
-        metadata=declare(vector("initial position of its centre", sized=False))
+        metadata=declare(vector("initial position of its centre [length]", sized=False))
     )
-    velocity: tuple[float, ...] = field(metadata=declare(vector("initial velocity")))
+    velocity: tuple[float, ...] = field(metadata=declare(vector("initial velocity [length/time]")))
     radius: float = field(metadata=_RADIUS)
     mass: float = field(default=1.0, metadata=_MASS)
     spin: float | tuple[float, ...] | None = field(
         default=None,
-        metadata=declare(describe(_SPIN, "angular velocity: a number in 2D, a vector in 3D")),
+        metadata=declare(describe(_SPIN, "angular velocity [1/time]: a number in 2D, a vector in 3D")),
     )
     moment_of_inertia: float | None = field(default=None, metadata=_MOMENT)
     fixed: bool = field(default=False, metadata=_FIXED)
     vibration: float | None = field(
-        default=None, metadata=declare(not_negative("of a fixed particle: initial energy of vibration"))
+        default=None,
+        metadata=declare(not_negative("of a fixed particle [energy]: initial energy of vibration")),
     )
 
     def __post_init__(self) -> None:
@@ -413,42 +329,21 @@ class Particle:
 
     @property
     def radii(self) -> np.ndarray:
-        """Radius of the particle as an array, shape (1,).
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).radii
-        array([0.5])
-        """
+        """Radius of the particle as an array, shape (1,)."""
         import numpy as np
 
         return np.array([self.radius])
 
     @property
     def largest_radius(self) -> float:
-        """Radius of the particle.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).largest_radius
-        0.5
-        """
+        """Radius of the particle."""
         return self.radius
 
     smallest_radius = largest_radius
 
     @property
     def vibrates(self) -> bool:
-        """True if the particle has a mode of vibration.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).vibrates
-        False
-        """
+        """True if the particle has a mode of vibration."""
         return self.vibration is not None
 
     def initial_temperature(self, dimension: int) -> float:
@@ -463,25 +358,12 @@ class Particle:
         -------
         float
             The temperature, in [energy].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(2.0, 0.0), radius=0.5).initial_temperature(2)
-        2.0
         """
         return self.mass * sum(component**2 for component in self.velocity) / dimension
 
     @property
     def spin_vector(self) -> tuple[float, ...]:
-        """Angular velocity as a vector, shape (3,); in 2D it is normal to the plane.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Particle(position=(1.0, 2.0), velocity=(0.0, 0.0), radius=0.5).spin_vector
-        (0.0, 0.0, 0.0)
-        """
+        """Angular velocity as a vector, shape (3,); in 2D it is normal to the plane."""
         if self.spin is None:
             return 0.0, 0.0, 0.0
         return self.spin if isinstance(self.spin, tuple) else (0.0, 0.0, self.spin)

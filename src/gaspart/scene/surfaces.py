@@ -14,6 +14,7 @@ from gaspart.keys import (
     choice,
     declare,
     describe,
+    documented,
     fraction,
     positive,
     set_fields,
@@ -32,10 +33,7 @@ FACE_KINDS: dict[str, type[Surface]] = {}
 
 
 def key_of(face: Any) -> Any:
-    """Return the key of a face for its key or its name as a wall.
-
-    Other values are returned unchanged.
-    """
+    """Return the key of a face for its key or its name as a wall. Other values are returned unchanged."""
     return face.strip().replace(" ", "_") if isinstance(face, str) else face
 
 
@@ -48,9 +46,8 @@ def wall_of(face: Any) -> Any:
 
 @dataclass(frozen=True)
 class Surface:
-    """Kind of face. A derived class is registered by its `kind`.
-
-    `moves` is True if the face moves along its normal. Only the event-driven engine simulates such faces.
+    """Kind of face. A derived class is registered by its `kind`. `moves` is True if the face moves along its
+    normal. Only the event-driven engine simulates such faces.
     """
 
     kind: ClassVar[str]
@@ -64,9 +61,8 @@ class Surface:
 
     @property
     def rule(self) -> tuple[str, float]:
-        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`).
-
-        The effect may depend on this one number only, which is an energy or a momentum.
+        """Name and parameter of the wall's effect on particles, for the kernels (`kernels.obstacles`). The
+        effect may depend on this one number only, which is an energy or a momentum.
         """
         return self.kind, 0.0
 
@@ -104,41 +100,26 @@ _ENDS = {
 _TEMPERATURE = Kind({"anyOf": [POSITIVE, _ENDS]}, _check_temperature)
 
 
+@documented
 @dataclass(frozen=True)
 class Thermal(Surface):
     """A wall at a temperature; velocities of particles that leave it are drawn for this temperature.
 
-    Parameters
-    ----------
-    temperature : float or dict of str to float, [energy]
-        Temperature k_B T of the wall. With one value at each of two opposite faces, as in {"y_low": 1.0,
-        "y_high": 2.0}, the temperature varies linearly between these faces.
-    components : {"all", "normal"}, default "all"
-        Velocity components that are drawn at random. "all": all components are drawn, and the spins of rough
-        particles (a diffuse wall with full accommodation). "normal": only the normal component is drawn; the
-        tangential components and the spins are unchanged [1]_.
-    velocity : sequence of float, shape (d,), [length/time], optional
-        Velocity of the wall parallel to its surface. This velocity is the mean of the drawn tangential
-        velocities. Default: the wall is at rest.
-    accommodation : float, [1], optional
-        Fraction of hits after which velocities are drawn. In the other hits the particle is reflected
-        specularly [2]_. Default: 1.
+    With `components` "all", all components are drawn, and the spins of rough particles (a diffuse wall with
+    full accommodation); with "normal" only the normal component is drawn, and the others do not change.
+
+    The normal velocity v is drawn from the flux-weighted distribution: v = sqrt(-2 kT/m ln U), where U is
+    uniform in (0, 1). If the temperature varies along the face, the temperature at the point of the hit is
+    used.
+
+    Literature: R. Frederickx and P. Meerts (2010), section 4.4.
+
+    Literature: J. C. Maxwell, Phil. Trans. R. Soc. 170, 231 (1879).
 
     Raises
     ------
     SceneError
         If a value is invalid, or a wall with components "normal" has a velocity.
-
-    Notes
-    -----
-    The normal velocity v is drawn from the flux-weighted distribution: v = sqrt(-2 kT/m ln U), where U is
-    uniform in (0, 1). If the temperature varies along the face, the temperature at the point of the hit is
-    used.
-
-    References
-    ----------
-    .. [1] R. Frederickx and P. Meerts (2010), section 4.4.
-    .. [2] J. C. Maxwell, Phil. Trans. R. Soc. 170, 231 (1879).
 
     Examples
     --------
@@ -152,7 +133,11 @@ class Thermal(Surface):
     temperature: float | dict[str, float] = field(
         hash=False,
         metadata=declare(
-            describe(_TEMPERATURE, "temperature of the wall, or those where it ends, at two opposite faces")
+            describe(
+                _TEMPERATURE,
+                "temperature of the wall [energy]; one value at each of two opposite faces is a "
+                "linear variation between them",
+            )
         ),
     )
     components: str = field(
@@ -161,12 +146,19 @@ class Thermal(Surface):
     )
     velocity: tuple[float, ...] | None = field(
         default=None,
-        metadata=declare(vector("velocity of the wall, along itself; without it the wall is at rest")),
+        metadata=declare(
+            vector(
+                "velocity of the wall along itself [length/time], the mean of drawn velocities; "
+                "without it the wall is at rest"
+            )
+        ),
     )
     accommodation: float | None = field(
         default=None,
         metadata=declare(
-            fraction("fraction of hits after which velocities are drawn, of mirrored others; 1 without it")
+            fraction(
+                "fraction of hits after which velocities are drawn; other hits are mirrored; 1 without it"
+            )
         ),
     )
 
@@ -202,28 +194,18 @@ class Thermal(Surface):
         return self.components == "normal"
 
 
+@documented
 @dataclass(frozen=True)
 class Well(Surface):
     """A wall with an attractive square well: the energy is -`depth` closer than `width` to it.
 
-    Parameters
-    ----------
-    depth : float, [energy]
-        Depth of the well.
-    width : float, [length]
-        Width of the well. A particle is in the well if its surface is at most this far from the wall.
-    temperature : float, [energy], optional
-        Temperature of the wall behind the well, see `Thermal`. Default: the wall is hard.
+    A particle leaves the well if the energy of its normal velocity, m v_n^2 / 2, exceeds `depth`. Otherwise
+    it is reflected back into the well.
 
     Raises
     ------
     SceneError
         If a value is not positive.
-
-    Notes
-    -----
-    A particle leaves the well if the energy of its normal velocity, m v_n^2 / 2, exceeds `depth`. Otherwise
-    it is reflected back into the well.
 
     Examples
     --------
@@ -234,12 +216,17 @@ class Well(Surface):
     ('hard', 0.0)
     """
 
-    depth: float = field(metadata=declare(positive("depth of the well: an energy")))
+    depth: float = field(metadata=declare(positive("depth of the well [energy]")))
     width: float = field(
-        metadata=declare(positive("distance of a particle's surface from the wall up to which it lies"))
+        metadata=declare(
+            positive("largest distance of a particle's surface from the wall in the well [length]")
+        )
     )
     temperature: float | None = field(
-        default=None, metadata=declare(positive("temperature of the wall; without it the wall is hard"))
+        default=None,
+        metadata=declare(
+            positive("temperature of the wall behind the well [energy]; without it the wall is hard")
+        ),
     )
 
     kind: ClassVar[str] = "well"
@@ -257,27 +244,21 @@ class Well(Surface):
         return () if self.temperature is None else (self.temperature,)
 
 
+@documented
 @dataclass(frozen=True)
 class Sticky(Surface):
     """A wall to which slow particles stick, after Frederickx & Meerts (2010), section 4.5.
 
-    Parameters
-    ----------
-    momentum : float, [mass length/time]
-        Normal momentum p below which an arriving particle sticks to the wall.
-
-    Raises
-    ------
-    SceneError
-        If the momentum is not positive.
-
-    Notes
-    -----
     The normal kinetic energy of a particle that sticks becomes energy of its vibration, and the particle
     slides along the wall. If a contact with another particle gives it a normal velocity, the energy of this
     velocity is added to the vibration. Once the energy of the vibration reaches p^2 / 2m, the particle leaves
     the wall with this energy. No potential binds the particle, so that sticking is not the exact reverse of
     leaving: detailed balance is broken.
+
+    Raises
+    ------
+    SceneError
+        If the momentum is not positive.
 
     Examples
     --------
@@ -286,7 +267,11 @@ class Sticky(Surface):
     ('sticky', 0.5)
     """
 
-    momentum: float = field(metadata=declare(positive("normal momentum below which a particle stays")))
+    momentum: float = field(
+        metadata=declare(
+            positive("normal momentum below which an arriving particle stays [mass length/time]")
+        )
+    )
 
     kind: ClassVar[str] = "sticky"
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from gaspart.errors import SceneError
-from gaspart.keys import declare, positive, two_vectors, validate, vector
+from gaspart.keys import declare, documented, positive, two_vectors, validate, vector
 from gaspart.keys.values import finite_vector, positive_number
 
 if TYPE_CHECKING:
@@ -49,28 +49,19 @@ def crossed_axis(wall: Wall | Plate, lengths: tuple[float, ...]) -> int:
     return -1
 
 
-_TEMPERATURE = positive("temperature of the wall, from which velocities are drawn; without it it is hard")
-_MASS = positive("mass of a wall across the container that particles move; without it it is at rest")
+_TEMPERATURE = positive(
+    "temperature of the wall [energy], from which velocities are drawn; without it it is hard"
+)
+_MASS = positive("mass of a wall across the container that particles move [mass]; without it it is at rest")
 WALL_RULE = "a Wall needs a container of two dimensions, a Plate one of three"
 
 
+@documented
 @dataclass(frozen=True)
 class Wall:
     """A straight wall inside a container of two dimensions, which particles hit from both sides.
 
     The ends of the wall are solid: particles hit them too.
-
-    Parameters
-    ----------
-    start : sequence of float, shape (2,), [length]
-        One end.
-    end : sequence of float, shape (2,), [length]
-        The other end.
-    temperature : float, [energy], optional
-        Temperature of the wall: particles leave it as a `Thermal` face. Default: the wall is hard.
-    mass : float, [mass], optional
-        Mass of a wall across the container, which particles move: a piston between two gases (see `Plate`).
-        Default: the wall is at rest.
 
     Raises
     ------
@@ -90,8 +81,8 @@ class Wall:
     5.0
     """
 
-    start: tuple[float, ...] = field(metadata=declare(vector("one end", 2, sized=False)))
-    end: tuple[float, ...] = field(metadata=declare(vector("the other end", 2, sized=False)))
+    start: tuple[float, ...] = field(metadata=declare(vector("one end [length]", 2, sized=False)))
+    end: tuple[float, ...] = field(metadata=declare(vector("the other end [length]", 2, sized=False)))
     temperature: float | None = field(default=None, metadata=declare(_TEMPERATURE))
     mass: float | None = field(default=None, metadata=declare(_MASS))
 
@@ -103,14 +94,7 @@ class Wall:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Coordinates of both ends of the wall, by their keys.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).corners
-        {'start': (2.0, 0.0), 'end': (2.0, 6.0)}
-        """
+        """Coordinates of both ends of the wall, by their keys."""
         return {"start": self.start, "end": self.end}
 
     def distance(self, point: tuple[float, ...]) -> float:
@@ -125,12 +109,6 @@ class Wall:
         -------
         float
             The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> gp.Wall(start=(2.0, 0.0), end=(2.0, 6.0)).distance((5.0, 3.0))
-        3.0
         """
         (ax, ay), (bx, by), (x, y) = self.start, self.end, point
         s = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
@@ -138,23 +116,18 @@ class Wall:
         return math.hypot(x - ax - s * (bx - ax), y - ay - s * (by - ay))
 
 
+@documented
 @dataclass(frozen=True)
 class Plate:
     """A flat rectangular wall inside a container of three dimensions, which particles hit from both sides.
 
     The edges and the corners of the plate are solid: particles hit them too.
 
-    Parameters
-    ----------
-    corner : sequence of float, shape (3,), [length]
-        One corner.
-    edges : sequence of two vectors, shape (2, 3), [length]
-        Vectors from this corner to the two neighbouring corners, at right angles.
-    temperature : float, [energy], optional
-        Temperature of the wall: particles leave it as a `Thermal` face. Default: the wall is hard.
-    mass : float, [mass], optional
-        Mass of a wall across the container, which particles move: a piston between two gases. Default: the
-        wall is at rest.
+    A plate with a `mass` must extend across the whole container, perpendicular to an axis. It starts at rest.
+    Only hits of particles change the velocity of the plate, which is along this axis. In each hit the plate
+    and the particle exchange momentum without loss of energy (E. H. Lieb, Physica A 263, 491 (1999)). The
+    plate conducts heat only by its motion. There must be no other interior wall. There must be particles on
+    both sides, and all particles must be smooth and elastic.
 
     Raises
     ------
@@ -165,18 +138,6 @@ class Plate:
     --------
     Wall : A wall inside a container of two dimensions.
 
-    Notes
-    -----
-    A plate with a `mass` must extend across the whole container, perpendicular to an axis. It starts at rest.
-    Only hits of particles change the velocity of the plate, which is along this axis. In each hit the plate
-    and the particle exchange momentum without loss of energy [1]_. The plate conducts heat only by its
-    motion. There must be no other interior wall. There must be particles on both sides, and all particles
-    must be smooth and elastic.
-
-    References
-    ----------
-    .. [1] E. H. Lieb, Physica A 263, 491 (1999).
-
     Examples
     --------
     >>> import gaspart as gp
@@ -185,9 +146,13 @@ class Plate:
     3.0
     """
 
-    corner: tuple[float, ...] = field(metadata=declare(vector("one corner", 3, sized=False)))
+    corner: tuple[float, ...] = field(metadata=declare(vector("one corner [length]", 3, sized=False)))
     edges: tuple[tuple[float, ...], ...] = field(
-        metadata=declare(two_vectors("the vectors from it to the two neighbouring corners", 3))
+        metadata=declare(
+            two_vectors(
+                "vectors from this corner to the two neighbouring corners [length], at right angles", 3
+            )
+        )
     )
     temperature: float | None = field(default=None, metadata=declare(_TEMPERATURE))
     mass: float | None = field(default=None, metadata=declare(_MASS))
@@ -205,15 +170,7 @@ class Plate:
 
     @property
     def corners(self) -> dict[str, tuple[float, ...]]:
-        """Coordinates of the four corners, by the keys that determine them.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
-        >>> plate.corners["edges"]
-        (2.0, 4.0, 4.0)
-        """
+        """Coordinates of the four corners, by the keys that determine them."""
         first, second = self.edges
         ends = {"edges[0]": (first,), "edges[1]": (second,), "edges": (first, second)}
         far = {key: tuple(map(sum, zip(self.corner, *edges, strict=True))) for key, edges in ends.items()}
@@ -231,13 +188,6 @@ class Plate:
         -------
         float
             The distance, in [length].
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> plate = gp.Plate(corner=(2.0, 0.0, 0.0), edges=((0.0, 4.0, 0.0), (0.0, 0.0, 4.0)))
-        >>> plate.distance((2.0, 7.0, 8.0))
-        5.0
         """
         away = [x - y for x, y in zip(point, self.corner, strict=True)]
         for edge in self.edges:

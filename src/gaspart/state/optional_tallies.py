@@ -39,22 +39,8 @@ class OptionalTally:
 
     @classmethod
     def from_text(cls, text: str) -> Self:
-        """Return the tally that the text of its option describes.
-
-        Parameters
-        ----------
-        text : str
-            Text in the `form` of the tally.
-
-        Returns
-        -------
-        OptionalTally
-            Tally.
-
-        Raises
-        ------
-        SceneError
-            If the text is invalid.
+        """Return the tally that the text of its option describes. Raises SceneError if the text is
+        invalid.
         """
         readers = {"str": str, "int": int, "float": float}
         parts, keys = str(text).split(":"), fields(cls)
@@ -77,13 +63,7 @@ class OptionalTally:
         return f"--{self.name.replace('_', '-')} {self.to_text()}"
 
     def check(self, scene: Scene) -> None:
-        """Raise SceneError if the tally is not defined for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene to check.
-        """
+        """Raise SceneError if the tally is not defined for a scene."""
         self._require(scene)
 
     def _require(self, scene: Scene) -> None:

@@ -68,20 +68,14 @@ _FIRST_NAME = struct.pack(">I", 5) + b"frame"
 
 
 def counters(engine: Engine, tallies: Iterable[OptionalTally] = ()) -> tuple[str, ...]:
-    """Return the names of the cumulative sums in a file of this engine. The sums start at time 0, and each
-    sum is a variable of the file. Sums that only other engines compute are omitted, because they would be
-    zero.
-
-    tallies : optional tallies of the run.
-    """
+    """Return the cumulative sums, from time 0, of a file of this engine with optional `tallies`."""
     absent = {name for kind in ENGINES.values() for name in kind.counters} - set(engine.counters)
     return tuple(name for name in tallied_fields(tallies) if name not in {"time", *absent})
 
 
 def cell(scene: Scene, lengths: np.ndarray, piston: np.ndarray | None) -> dict[str, np.ndarray]:
     """Return the variables of a frame that describe the container, which may end at a piston. In two
-    dimensions the height of the cell along z is its longest side. The reason is that other programs assume
-    that the cell is periodic along z as well, and some limit distances to half of the smallest side.
+    dimensions the height along z is the longest side, because other programs assume that z is periodic too.
     """
     sides, origin = np.full(3, float(np.max(lengths))), np.zeros(3)
     sides[: len(lengths)] = lengths
@@ -173,11 +167,9 @@ class Layout:
         particles: Mapping[str, np.ndarray],
         initial: Mapping[str, np.ndarray] | None = None,
     ) -> bytes:
-        """Return the bytes of a file without frames. The first attributes are `BOOKKEEPING`.
-
-        particles : radius, mass and type of each particle
-        initial : properties of the particles at time 0, in double precision, if the user supplied an initial
-            state
+        """Return the bytes of a file without frames. `particles`: radius, mass and type of each particle.
+        `initial`: properties of the particles at time 0, in double precision, if the user supplied an initial
+        state.
         """
         bookkeeping = dict(
             zip(BOOKKEEPING, (np.int32(0), np.int32(0), np.float64(self.frame.itemsize)), strict=True)
@@ -227,24 +219,19 @@ def _initial_axes(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 
 def _frames_begin(header: bytes) -> int:
-    """Return the offset of the first variable of a frame, time. This offset is stored in the header, as the
-    last value before the name of the next variable.
-    """
+    """Return the offset of the first variable of a frame, time, which the header contains."""
     after = b"cell_lengths"
     (begin,) = struct.unpack_from(">Q", header, header.index(struct.pack(">I", len(after)) + after) - 8)
     return int(begin)
 
 
 def _value_at(header: bytes | bytearray, name: str) -> int:
-    """Return the offset of the value of a numerical attribute. Before the value, the header contains the name
-    padded to words, the type, and the number of values.
-    """
+    """Return the offset of the value of a numerical attribute, after name, type and number of values."""
     return header.index(name.encode()) + -(-len(name) // WORD) * WORD + 2 * WORD
 
 
 def stored_header(file: BinaryIO) -> bytes:
-    """Return the header of a file, with the number of frames set to 0. The result is the header that
-    `Layout.header` made. Raises ValueError, with the violated rule, if the file is damaged or from another
+    """Return the header that `Layout.header` made; ValueError, with the rule, if damaged or of another
     program.
     """
     file.seek(0)
@@ -284,9 +271,8 @@ def same_header(file: BinaryIO, header: bytes) -> bool:
 
 
 def is_blank(file: BinaryIO) -> bool:
-    """Return True if a file is empty, or if its header is incomplete. The header is incomplete if its first
-    word is missing, because this word is written last. The bytes after it are compared, too, because a file
-    of zeros may belong to another program.
+    """Return True if a file is empty, or its header lacks its first word, which is written last. The bytes
+    after it are compared, too, because a file of zeros may belong to another program.
     """
     file.seek(0)
     start = file.read(len(_UNFINISHED) + WORD + len(_FIRST_NAME))
@@ -317,13 +303,9 @@ def _frame_checksum(frame: bytes | memoryview, number: int, header_checksum: int
 
 
 def damaged_frame(file: int, header: bytes, numbers: range, checksum: int | None = None) -> int | None:
-    """Return the first frame that is damaged or truncated; None if all are correct. All these frames are
-    read. Computing the CRC-32 takes about as long as copying the frames in memory.
-
-    file : descriptor
-    numbers : frames to test
-    checksum : checksum of the header, if the caller knows it. The header is long: it has three numbers for
-        each particle
+    """Return the first frame that is damaged or truncated; None if all are correct. Computing the CRC-32
+    takes about as long as copying the frames in memory. `numbers`: frames to test. `checksum`: checksum of
+    the header, if the caller knows it. The header is long: it has three numbers for each particle.
     """
     size, header_checksum = frame_bytes(header), zlib.crc32(header) if checksum is None else checksum
     at_once = max(1, _CHUNK // size)
@@ -345,9 +327,7 @@ def frames_of(file: BinaryIO, header: bytes, count: int) -> Iterator[memoryview]
 
 
 class CheckedFrames:
-    """Record of the undamaged frames of an open trajectory. Each frame is checked once, before its
-    first use.
-    """
+    """Record of the undamaged frames of an open trajectory; each is checked once, before its first use."""
 
     def __init__(self, file: BinaryIO, header: bytes, frames: int) -> None:
         self._header, self._checksum = header, zlib.crc32(header)
@@ -368,9 +348,7 @@ class CheckedFrames:
 
 
 class Frames:
-    """Frames of an unbuffered open file, which is first truncated to `kept` frames. If `kept` is 0, the
-    header is written too. Every method may raise OSError.
-    """
+    """Frames of an unbuffered open file, truncated to `kept`; 0 writes the header too. May raise OSError."""
 
     def __init__(self, file: BinaryIO, layout: Layout, header: bytes, kept: int = 0) -> None:
         self._file, self._frame = file, np.zeros((), layout.frame)
@@ -395,9 +373,7 @@ class Frames:
         os.pwrite(self._file.fileno(), header[: len(MAGIC)], 0)
 
     def append(self, values: dict[str, np.ndarray | float]) -> None:
-        """Write a frame, with a value for every variable of the layout. Vectors may have 2 or 3
-        components.
-        """
+        """Write a frame, with a value (vectors of 2 or 3 components) for every variable of the layout."""
         for name in self._frame.dtype.names[:-1]:
             array = np.asarray(values[name])
             there = self._frame[name]

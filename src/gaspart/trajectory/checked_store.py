@@ -12,8 +12,7 @@ import xarray as xr
 from xarray.backends import BackendArray, NetCDF4DataStore
 from xarray.core import indexing
 
-from gaspart.errors import SceneError
-from gaspart.errors.words import MissingName
+from gaspart.errors import MissingName, SceneError
 from gaspart.trajectory.amber import CheckedFrames
 from gaspart.trajectory.opening import damage
 
@@ -41,9 +40,9 @@ class Trajectory(xr.Dataset):
 
 
 class CheckedStore(NetCDF4DataStore):
-    """Variables of a trajectory; checksums of frames are verified before use. Times of frames are read when
-    the file is opened. At this moment, checksums are verified only for frames whose times are not multiples
-    of `interval`, because verifying all frames would require reading the complete file.
+    """Variables of a trajectory; checksums of frames are verified before use. At this moment, checksums are
+    verified only for frames whose times are not multiples of `interval`, because verifying all frames would
+    require reading the complete file.
     """
 
     def __init__(self, file: netCDF4.Dataset, path: Path, frames: CheckedFrames, interval: float) -> None:

@@ -161,9 +161,7 @@ def meaning_of(name: str) -> str:
 
 
 class _Correlator:
-    """Sums over all pairs of samples up to a largest lag. The last axis of the array `earlier` contains the
-    most recent samples, one for each lag. The last axis of `sums` is the lag, too.
-    """
+    """Sums over all pairs of samples up to a largest lag, the last axis of `earlier` and `sums`."""
 
     def __init__(self, settings: Correlations, earlier: tuple[int, ...], sums: tuple[int, ...]) -> None:
         self._earlier = np.zeros((*earlier, settings.lags + 1))
@@ -235,9 +233,7 @@ class Correlator(_Correlator):
         self._add(now, products, self._moving.sum())
 
     def _relative(self, values: np.ndarray) -> np.ndarray:
-        """Return values (N, d) for moving particles only, relative to the centre of mass. For M moving
-        particles, the result has the shape (M d,).
-        """
+        """Return values (M d,) of moving particles, from (N, d), relative to the centre of mass."""
         values = values[self._moving]
         centre = (values * self._weights).sum(axis=0)
         return (self._scale * (values - np.where(self._conserved, centre, 0.0))).ravel()
@@ -249,9 +245,8 @@ class Correlator(_Correlator):
 
 
 def _scale(weights: np.ndarray, conserved: np.ndarray) -> np.ndarray:
-    """Return the rescaling factors (M, d) for components relative to the centre of mass.
-
-    weights : (M, 1), mass of each particle divided by the total mass.
+    """Return rescaling factors (M, d) relative to the centre of mass; `weights` (M, 1) are parts of the total
+    mass.
     """
     count = len(weights)
     if count < 2 or not conserved.any():
@@ -327,9 +322,7 @@ _NAME = "pair collisions"  # name of the array in a checkpoint
 
 
 def pairs_of(scene: Scene) -> list[tuple[int, int]]:
-    """Return the pairs of species by their indices, the lower index first. Raises SceneError for single
-    particles.
-    """
+    """Return the pairs of species by index, the lower first; SceneError for single particles."""
     if scene.particles:
         raise SceneError(
             "particles", len(scene.particles), "excludes pairs, which are counted for species only"

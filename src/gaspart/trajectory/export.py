@@ -22,8 +22,7 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
-from gaspart.trajectory.checkpoint import kept_beside
-from gaspart.trajectory.opening import check_frames, open_netcdf_file, open_verified, run_path
+from gaspart.trajectory.opening import check_frames, kept_beside, open_netcdf_file, open_verified, run_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
@@ -122,9 +121,7 @@ def export(trajectory: str | Path, path: str | Path, frame: int | str = -1, over
 
 
 def _snapshots(path: Path, frame: int | str) -> Iterator[Snapshot]:
-    """Return an iterator over one frame, or over all frames for `frame` = "all". Errors for frames that
-    cannot be exported are raised immediately.
-    """
+    """Return an iterator over one frame, or all for "all"; errors are raised immediately."""
     recipe = read_recipe(path)
     recipe.require_all(path)
     with open_netcdf_file(path) as file:
@@ -183,9 +180,7 @@ def _write_gsd(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
-    """Fill a GSD frame, whose coordinates have their origin in the middle of the box. For discs the thickness
-    of the box is zero.
-    """
+    """Fill a GSD frame, with its origin in the middle of the box, whose thickness is zero for discs."""
     sides = np.where([False, False, snapshot.dimension == 2], 0.0, snapshot.lengths)
     frame.configuration.dimensions = snapshot.dimension
     frame.configuration.step = snapshot.frame
@@ -203,8 +198,8 @@ def _gsd_frame(frame: Any, snapshot: Snapshot) -> Any:
 
 
 def _shapes(snapshot: Snapshot) -> list[dict]:
-    """Return the shape of each type; {} for a type with particles of different sizes. The shapes are needed
-    because other programs assume a diameter of 1 without them.
+    """Return the shape of each type, without which other programs assume a diameter of 1; {} for several
+    sizes.
     """
     shapes: list[dict] = []
     for n in range(int(snapshot.types.max(initial=0)) + 1):
@@ -234,9 +229,7 @@ def _write_xyz(path: Path, snapshots: Iterator[Snapshot]) -> None:
 
 
 def _write_data(path: Path, snapshots: Iterator[Snapshot]) -> None:
-    """Write a LAMMPS data file of atom_style sphere. The density is the particle's mass divided by the volume
-    of a ball of its diameter.
-    """
+    """Write a LAMMPS data file of atom_style sphere, with mass over the volume of a ball as density."""
     (snapshot,) = snapshots
     count = len(snapshot.positions)
     density = snapshot.masses / (math.pi / 6.0 * snapshot.diameters**3)

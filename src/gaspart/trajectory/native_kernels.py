@@ -35,22 +35,14 @@ _STORED = "native"  # folder in the cache with an empty file for each compiled s
 
 
 def pays(seconds: float, features: dict[str, bool]) -> bool:
-    """Return True if native kernels save more time than their compilation costs. `seconds` is the CPU time of
-    a run.
-
-    features : True or False for features of the processor, by LLVM name.
-    """
+    """Return True if native kernels save more than they cost after a run of `seconds` of CPU time."""
     return features.get("avx512f", False) and seconds * (1.0 - 1.0 / GAIN) > COMPILATION
 
 
 def replace_shipped_kernels(seconds: float) -> bool:
-    """Compile the kernels of this process for this processor, if this saves time.
-
-    seconds : CPU time of the run that has ended.
-
-    Returns True if native kernels were stored. Nothing is compiled in three further cases: no kernels of the
-    package are in use; the settings of numba name a processor; or another process is compiling the same
-    kernels.
+    """Compile the kernels of this process for this processor, if this saves time. Returns True if native
+    kernels were stored. Nothing is compiled in three further cases: no kernels of the package are in use; the
+    settings of numba name a processor; or another process is compiling the same kernels.
     """
     if not (cache.FOLDER / cache.LIST).exists() or not pays(seconds, _features()):
         return False
@@ -114,8 +106,8 @@ def _stamp(kernels: list[Kernel]) -> Path | None:
 
 
 def compile_kernels(send: Callable[[Any], None], kernels: list[Kernel]) -> int:
-    """Compile kernels for this processor in a separate process, and return their number. Kernels that are in
-    the cache are not compiled again.
+    """Compile kernels that the cache lacks, in a process of its own, for this processor; return
+    their number.
     """
     cache.FOLDER = Path(os.devnull)  # this process must not load kernels of the package
     for module, name, types in kernels:

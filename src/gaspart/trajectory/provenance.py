@@ -16,11 +16,11 @@ _PACKAGES = ("numpy", "numba", "netCDF4")
 
 
 def _git(*arguments: str) -> str | None:
-    """Return the output of a git command in the folder of this package, or None. If git is missing or fails,
-    the function returns None. Optional locks of git are disabled, because a process of git that is killed
-    would leave `.git/index.lock`, which blocks later commits. The command `git describe --dirty` is not used,
-    because its lock is not optional. OSError is raised if git could not be started for lack of file
-    descriptors or memory, because the contents of a trajectory must not depend on this.
+    """Return the output of a git command in the folder of this package, or None. Optional locks of git are
+    disabled, because a process of git that is killed would leave `.git/index.lock`, which blocks later
+    commits. The command `git describe --dirty` is not used, because its lock is not optional. OSError is
+    raised if git could not be started for lack of file descriptors or memory, because the contents of a
+    trajectory must not depend on this.
     """
     command = ["git", "-C", str(Path(__file__).parent), *arguments]
     environment = {**os.environ, "LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
@@ -39,8 +39,7 @@ def _git(*arguments: str) -> str | None:
 @cache
 def git_revision() -> str:
     """Return the commit of the git checkout that contains this package; "" without a checkout. The suffix
-    `-modified` is appended if files were changed after the commit. A package that is installed in a
-    repository, but not tracked by it, has no commit.
+    `-modified` is appended if files were changed after the commit.
     """
     if _git("ls-files", "--error-unmatch", Path(__file__).with_name("__init__.py").name) is None:
         return ""

@@ -35,9 +35,7 @@ ROUNDING = 1e-9
 
 
 def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
-    """Return the ratio of `value` to `unit`, which must be a positive integer. Rounding errors are tolerated.
-    Raises SceneError for any other ratio.
-    """
+    """Return the ratio of `value` to `unit`; SceneError unless it is a positive integer, up to rounding."""
     ratio = round(value / unit) if value / unit < 2**53 else 0
     if ratio < 1 or abs(value - ratio * unit) > ROUNDING * value:
         raise SceneError(key, value, f"must be a whole multiple of {unit_key}, {unit:g}")
@@ -46,9 +44,7 @@ def multiple(key: str, value: float, unit_key: str, unit: float) -> int:
 
 @dataclass(frozen=True)
 class Recipe(Contents):
-    """Everything that determines a trajectory; invalid settings raise SceneError. A recipe contains the
-    scene, the engine, the seed, the length of the run, and the `Contents` of its file.
-    """
+    """Everything that determines a trajectory: scene, engine, seed, length and `Contents`."""
 
     scene: Scene
     engine: Engine
@@ -117,9 +113,7 @@ class Recipe(Contents):
 
     @property
     def frames(self) -> int:
-        """Number of frames of the complete trajectory, including the frame at time 0. For a run that ends at
-        an accuracy, this is the maximum number.
-        """
+        """Number of frames with that at time 0, the maximum for a run that ends at an accuracy."""
         if self.until:
             return self.until.most_frames(self.sample_interval) or amber.MOST_FRAMES
         assert self.duration is not None
@@ -207,10 +201,7 @@ class Recipe(Contents):
         return {name: np.array(part) for name, part in parts.items() if part is not None}
 
     def header(self, revision: str) -> bytes:
-        """Return the bytes before the first frame of a file that this program writes.
-
-        revision : git revision of the program; "" without a revision.
-        """
+        """Return the bytes before the first frame of a file of this program at a git `revision`, or ""."""
         from gaspart.kernels.compile.sources import source_digest
 
         scene, versions = self.scene, provenance.versions()
@@ -251,10 +242,7 @@ def read_recipe(path: str | Path) -> Recipe:
 
 
 def stored_recipe(file: netCDF4.Dataset, path: Path) -> Recipe:
-    """Return the recipe of an open trajectory. Raises SceneError if it has no recipe.
-
-    path : path of the trajectory, for messages
-    """
+    """Return the recipe of the open trajectory at `path`; SceneError without one."""
     stored = file.__dict__
     try:
         scene = Scene.from_dict(parse_yaml(stored["scene"], f"{path}, attribute scene"), str(path))

@@ -17,8 +17,8 @@ from gaspart.simulation import Simulation
 from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
 from gaspart.trajectory.amber import Frames
-from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import PairCounter, correlator_for
+from gaspart.trajectory.opening import checkpoint_path, write_checkpoint
 from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.run_options import examined_before, examined_from, is_examined
 
@@ -96,9 +96,7 @@ class Recording:
         set_note("")
 
     def _keep_failed(self) -> str:
-        """Store the state of a failed run, unless another file has the name for this state. Returns the
-        message about the stored state.
-        """
+        """Store the state of a failed run, unless another file has the name; return a message about it."""
         failed = self._path.with_name(self._path.name + ".failed.npz")
         try:
             write_checkpoint(failed, self._frames.header, self._frames.count, self._arrays())
@@ -107,8 +105,8 @@ class Recording:
         return f"its state is kept in {failed}"
 
     def _is_complete(self, signals: Deferral) -> bool:
-        """Return True if the file has all frames; wait for other replicas. The result depends on the frames
-        only. Therefore a run ends at the same frame even if it was interrupted.
+        """Return True if the file has all frames; wait for other replicas. It depends on the frames only, so
+        that an interrupted run ends at the same frame.
         """
         count = self._frames.count
         if count >= self._recipe.frames:
@@ -123,18 +121,14 @@ class Recording:
 
     def _estimate(self, frames: int, excess: float) -> float:
         """Return the time at which a run is expected to reach its accuracy. Errors decrease as 1 /
-        sqrt(time). Accuracies are tested only at certain frames.
-
-        excess : present error divided by the required error.
+        sqrt(time). `excess`: present error divided by the required error.
         """
         required_frames = frames * excess**2 if math.isfinite(excess) else 0.0
         expected = examined_from(min(max(required_frames, frames + 1.0), self._recipe.frames))
         return min((expected - 1) * self._recipe.sample_interval, self._recipe.longest)
 
     def _estimate_again(self) -> None:
-        """Estimate the duration of a continued run for progress reports. The estimate does not affect the
-        trajectory.
-        """
+        """Estimate the duration of a continued run for progress reports alone."""
         before = examined_before(self._frames.count)
         if self._progress and self._examine and before is not None:
             if (excess := self._examine(before)) is not None:
@@ -212,9 +206,7 @@ class Recording:
             self._pairs.take()
 
     def _advance(self, goal: float, **limits: Any) -> None:
-        """Advance by a segment towards the time `goal`, and adapt the length of segments. The next segment
-        should take about `_SEGMENT` seconds.
-        """
+        """Advance by a segment, of about `_SEGMENT` seconds, towards the time `goal`."""
         begun = time.monotonic()
         self._simulation.advance(**limits)
         if self._pairs:

@@ -41,9 +41,7 @@ def in_replicas(recipe: Recipe, replicas: int) -> list[Recipe]:
 
 
 def differ(scene: Scene, engine: Engine, has_initial: bool = False) -> bool:
-    """Return True if runs of a scene with different seeds give different results. The results differ if
-    random numbers are drawn for the initial state or during the run.
-    """
+    """Return True if runs of other seeds differ: random numbers are drawn at the start or later."""
     drawn = not has_initial and (scene.vibrates or any(kind.count for kind in scene.species))
     return drawn or engine.draws(scene)
 
@@ -108,9 +106,7 @@ def beside(path: Path, recipe: Recipe) -> list[tuple[Path, Recipe]]:
 
 
 def find_run(path: str | Path) -> tuple[Path, Recipe]:
-    """Return a file of the run at a path, finished or unfinished, and its recipe. The file is the file at the
-    path itself, or the file of the first of several replicas.
-    """
+    """Return a file of the run at a path, its own or its first replica's, and its recipe."""
     path = Path(path)
     first = replica_paths(path, 2)[0] if path.name else path
     file = next(

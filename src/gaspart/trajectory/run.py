@@ -26,25 +26,23 @@ from gaspart.keys.values import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.amber import Frames, frame_count, frames_of
-from gaspart.trajectory.checkpoint import (
-    CHECKPOINT,
-    Checkpoint,
-    checkpoint_path,
-    kept_beside,
-    read_checkpoint,
-    remove_checkpoint,
-    write_checkpoint,
-)
 from gaspart.trajectory.native_kernels import replace_shipped_kernels
 from gaspart.trajectory.opening import (
+    CHECKPOINT,
     TRAJECTORY,
     UNFINISHED,
+    Checkpoint,
     check_frames,
+    checkpoint_path,
     is_blank,
+    kept_beside,
     open_locked,
     open_verified,
     partial_path,
+    read_checkpoint,
+    remove_checkpoint,
     run_path,
+    write_checkpoint,
     writing,
 )
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision
@@ -66,9 +64,7 @@ _LOOK = 0.05  # seconds between checks of other replicas
 
 @dataclass(frozen=True)
 class WriteOptions:
-    """Options for writing a trajectory; its content does not depend on them. A negative time raises
-    SceneError.
-    """
+    """Options for writing a trajectory, which its content does not depend on; none may be negative."""
 
     checkpoint_seconds: float = 30.0
     progress: Progress | None = None
@@ -81,9 +77,7 @@ class WriteOptions:
 
 
 def record(recipe: Recipe, path: str | Path, options: WriteOptions) -> Path:
-    """Write the trajectory of a recipe at `path`, and return `path`. The exceptions are the same as in
-    `gaspart.run`.
-    """
+    """Write the trajectory of a recipe at `path`, and return `path`; raises as `gaspart.run`."""
     path = output_path(path)
     if path.suffix != ".nc" and not path.is_dir():  # `gaspart check` recognises the format by this suffix
         raise SceneError("path", str(path), "must end in .nc: a trajectory is a netCDF file")
@@ -216,9 +210,7 @@ def _record(
 
 
 def _can_keep(partial: Path, frames: int, overwrite: bool) -> bool:
-    """Return True if the first `frames` frames of a file are undamaged. If a frame is damaged, the function
-    raises SceneError, unless `overwrite` is True.
-    """
+    """Return True if the first `frames` are undamaged; SceneError if not, unless `overwrite`."""
     try:
         check_frames(partial, range(frames))
     except SceneError as error:
@@ -248,8 +240,8 @@ class Content(Enum):
 
 
 def is_finished(recipe: Recipe, path: Path, examiner: Examiner | None, overwrite: bool) -> bool:
-    """Return True if a run is complete at `path`; False if it may be begun, continued or extended there.
-    Raises SceneError if this would replace a file, unless `overwrite` is True.
+    """Return True if a run is complete at `path`; SceneError if a file would be replaced, unless
+    `overwrite`.
     """
     partial, content = partial_path(path), _content(path, recipe, examiner)
     if content is Content.COMPLETE:
@@ -310,9 +302,7 @@ def _difference(path: Path, recipe: Recipe, content: Content) -> str:
 
 
 def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | None) -> bool:
-    """Return True if a trajectory is complete with this number of frames; wait for replicas. The accuracy can
-    be tested only when the other replicas have these frames, too.
-    """
+    """Return True if a trajectory is complete with these frames, once other replicas have them too."""
     examine = examination(recipe, path, examiner)
     if frames == recipe.frames or examine is None or not is_examined(frames):
         return frames == recipe.frames
@@ -322,9 +312,7 @@ def is_complete(recipe: Recipe, path: Path, frames: int, examiner: Examiner | No
 
 
 def examination(recipe: Recipe, path: Path, examiner: Examiner | None) -> Examine | None:
-    """Return the function that tests the accuracy in the first frames of a run. For a run without required
-    accuracies, None is returned. All replicas of a run are tested together.
-    """
+    """Return the joint test of the accuracy of a run's replicas in their first frames, or None."""
     until = recipe.until
     if until is None:
         return None
@@ -375,9 +363,7 @@ def longer(path: Path, duration: float) -> Recipe:
 
 
 def is_beginning(path: Path, recipe: Recipe) -> bool:
-    """Return True if the file at `path` is the beginning of a requested run. In this case the two runs differ
-    only in their duration, and the requested duration is longer.
-    """
+    """Return True if the file at `path` differs from a requested run only by a shorter duration."""
     try:
         stored, revision = read_recipe(path), stored_revision(path)
         with open_verified(path) as (_, _, frames):
@@ -389,11 +375,10 @@ def is_beginning(path: Path, recipe: Recipe) -> bool:
 
 
 def take_over(path: Path, recipe: Recipe, frames: Frames) -> Checkpoint | None:
-    """Copy the frames and the final state of a shorter run to a longer run. The shorter run is at `path`. The
-    frames of the longer run are written to `frames`. If there is no shorter run, or if its final state was
-    not stored, the function returns None and changes nothing. The checkpoint of the shorter run is replaced
-    last, so that the copy can be repeated if it is interrupted. Raises OSError, and SceneError for a damaged
-    file.
+    """Copy the frames and the final state of a shorter run to a longer run. If there is no shorter run, or if
+    its final state was not stored, the function returns None and changes nothing. The checkpoint of the
+    shorter run is replaced last, so that the copy can be repeated if it is interrupted. Raises OSError, and
+    SceneError for a damaged file.
     """
     if not (path.exists() and is_beginning(path, recipe)):
         return None

@@ -68,9 +68,7 @@ def _check_correlations(key: str, value: Any) -> Correlations:
 
 
 def _check_tallies(key: str, value: Any) -> tuple[OptionalTally, ...]:
-    """Return requested tallies in the order of their declarations. Raises SceneError if `value` does not
-    consist of tallies.
-    """
+    """Return requested tallies in the order of their declarations; SceneError if they are none."""
     tallies = value if isinstance(value, Iterable) and not isinstance(value, str) else (value,)
     requested: dict[str, OptionalTally] = {}
     for tally in tallies:
@@ -88,9 +86,7 @@ def tallies_to_json(tallies: Iterable[OptionalTally]) -> str:
 
 
 def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
-    """Return the tallies that an attribute `tallies` describes; the inverse of `tallies_to_json`. Raises
-    SceneError for an unknown name, and TypeError for an unknown setting.
-    """
+    """Return the tallies of an attribute, the inverse of `tallies_to_json`; SceneError or TypeError."""
     tallies = []
     for settings in json.loads(text):
         name = settings.pop("name", None)
@@ -102,9 +98,7 @@ def tallies_from_json(text: str) -> tuple[OptionalTally, ...]:
 
 
 def stored_tally(attributes: Mapping[str, Any], kind: type[AnyTally]) -> AnyTally | None:
-    """Return the tally of a class from the attributes of a trajectory, or None. Raises SceneError and
-    TypeError under the same conditions as `tallies_from_json`.
-    """
+    """Return the tally of a class from a trajectory's attributes, or None; raises as `tallies_from_json`."""
     tallies = tallies_from_json(attributes.get("tallies", "[]"))
     return next((tally for tally in tallies if isinstance(tally, kind)), None)
 
@@ -119,13 +113,10 @@ def _declare(
     closed: bool = False,
     until: str = "",
 ) -> dict[str, Any]:
-    """Return the metadata of the field of an option.
-
-    kind : kind of the value; for an option of the command line and a key of a config, also meaning and
-        default
-    store, restore : conversions to the attribute of a file, and back
-    closed : True if open faces exclude the option, because particles are replaced
-    until : rule for the message if accuracies that end the run exclude the option
+    """Return the metadata of the field of an option. `kind`: kind of the value; for an option of the command
+    line and a key of a config, also meaning and default. `store` and `restore`: conversions to the attribute
+    of a file, and back. `closed`: True if open faces exclude the option, because particles are replaced.
+    `until`: rule for the message if accuracies that end the run exclude the option.
     """
     return {**declare(kind), "store": store, "restore": restore, "closed": closed, "until": until}
 
@@ -225,9 +216,7 @@ def required_contents(needs: Collection[str]) -> dict[str, bool]:
 
 
 def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of `Contents` from the attributes of a file. Raises SceneError, TypeError or
-    ValueError for an attribute that cannot be used.
-    """
+    """Return the fields of `Contents` from a file's attributes; SceneError, TypeError or ValueError."""
     return {
         item.name: item.metadata["restore"](attributes[item.name])
         for item in fields(Contents)
@@ -237,9 +226,8 @@ def stored_contents(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a recipe for settings in plain values. Texts and mappings are converted to
-    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations.
-
-    settings : fields of `Recipe`, with correlations as a mapping, and texts of tallies by their names
+    objects. Raises SceneError for an invalid text of a tally, or for invalid correlations. `settings`: fields
+    of `Recipe`, with correlations as a mapping, and texts of tallies by their names.
     """
     result = {name: value for name, value in settings.items() if name not in REQUESTED}
     if result.get("correlations") is not None:
@@ -249,9 +237,7 @@ def recipe_fields(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def contents_of(settings: Mapping[str, Any]) -> Contents:
-    """Return the `Contents` of a run's file from settings in plain values. The settings are explained in
-    `recipe_fields`.
-    """
+    """Return the `Contents` of a run's file from settings in plain values, see `recipe_fields`."""
     names = {item.name for item in fields(Contents)}
     values = recipe_fields(
         {name: value for name, value in settings.items() if name in names | REQUESTED.keys()}
@@ -280,8 +266,8 @@ def tallied_fields(tallies: Iterable[OptionalTally]) -> list[str]:
 
 
 def tally_axes(tally: OptionalTally, scene: Scene) -> dict[str, int]:
-    """Return the length of each axis of a tally's fields, by name, except `face`. The length of an axis is
-    the setting of the tally whose name is the plural of the axis name.
+    """Return the length of each axis of a tally's fields but `face`, from the setting with the
+    axis's plural.
     """
     lengths = {key.removesuffix("s"): length for key, length in asdict(tally).items()}
     lengths |= {"axis": scene.dimension, "direction": scene.dimension, "species": row_count(scene)}
@@ -304,10 +290,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Requirement:
-    """Required accuracy of an observable, as stored in a file.
-
-    See `gaspart.Accuracy`, which validates observables.
-    """
+    """Required accuracy of an observable, as stored in a file; see `gaspart.Accuracy`."""
 
     observable: str
     accuracy: float
@@ -357,10 +340,7 @@ class Until:
             object.__setattr__(self, "at_most", longest)
 
     def most_frames(self, sample_interval: float) -> int | None:
-        """Return the maximum number of frames, including time 0; None if there is no limit.
-
-        Raises SceneError if the maximum duration has no frame after time 0.
-        """
+        """Return the maximum number of frames, with time 0, or None; SceneError without one after time 0."""
         if self.at_most is None:
             return None
         intervals = math.floor(min(self.at_most / sample_interval, 2.0**53) * (1.0 + _ROUNDING))
@@ -379,17 +359,13 @@ class Until:
 
     @classmethod
     def from_dict(cls, values: dict) -> Until:
-        """Make an instance from a mapping, the inverse of `dataclasses.asdict`.
-
-        Raises SceneError.
-        """
+        """Make an instance from a mapping, the inverse of `dataclasses.asdict`. Raises SceneError."""
         return cls(tuple(Requirement(**entry) for entry in values["accuracies"]), values["at_most"])
 
     @classmethod
     def from_json(cls, text: str, at_most: float | None) -> Until:
-        """Make an instance from a text, the inverse of `to_json`.
-
-        Raises SceneError for invalid values, and TypeError or ValueError for a text of another form.
+        """Make an instance from `to_json`'s text; SceneError for values, TypeError or ValueError for
+        texts.
         """
         return cls(tuple(Requirement(**entry) for entry in json.loads(text)), at_most)
 

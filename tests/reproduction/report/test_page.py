@@ -24,7 +24,6 @@ from gaspart.reproduction.report.page import (
     by_chapter,
     deviation,
     dots,
-    films,
     findings,
     headline,
     picture,
@@ -101,12 +100,8 @@ def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
     assert beside.size == within.size == (100, 60)
     assert beside.narrow_size == within.narrow_size == (75, 150)
     assert within.large.startswith("data:image/webp;base64,") and within.narrow != within.large
-    for name in ("film", "other"):
-        (tmp_path / f"{name}.mp4").write_bytes(name.encode())
+    (tmp_path / "film.mp4").write_bytes(b"film")
     assert address(tmp_path / "film.mp4", True) == "data:video/mp4;base64,ZmlsbQ=="
-    paths = [tmp_path / "film.mp4", tmp_path / "other.mp4"]
-    assert list(films(paths, False)) == ["film", "other"]
-    assert films(paths, True) == {"film": "data:video/mp4;base64,ZmlsbQ=="}
 
 
 # The parts of a caption, and that each caption of the project has them.

@@ -14,7 +14,7 @@ from gaspart.analysis import observables
 from gaspart.analysis.run import Run
 from gaspart.analysis.run_data import FLOW
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.scene.gas import Mixture
+from gaspart.scene.facts import Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.scene.surfaces import Thermal
@@ -72,9 +72,8 @@ def equation_of(run: Run) -> str:
 def with_discretisation(
     expected: Expected, engine: Engine | None, scene: Scene | None, kind: str
 ) -> Expected:
-    """Add the errors of cells and steps to the uncertainty of a theory.
-
-    kind : kind of error, as in `Engine.bias`
+    """Add the errors of cells and steps to the uncertainty of a theory. `kind`: kind of error, as in
+    `Engine.bias`.
     """
     if engine is None or scene is None or not (bias := engine.bias(scene, kind)):
         return expected
@@ -94,9 +93,7 @@ RELAXED = 10.0
 
 
 def is_relaxed(run: Run) -> bool:
-    """Return True if velocities have Maxwell's distribution in the measured part of a run. Either they are
-    drawn from it, or particles have changed them often enough.
-    """
+    """Return True if velocities are drawn from Maxwell's distribution or were changed often enough."""
     scene = run.scene
     kinds, masses = scene.moving_kinds, [kind.mass for kind in scene.moving_kinds]
     temperatures = {kind.initial_temperature(run.dimension) for kind in kinds} | scene.face_temperatures
@@ -107,8 +104,8 @@ def is_relaxed(run: Run) -> bool:
 
 
 def changes_of_velocity(run: Run) -> np.ndarray:
-    """Return how often a particle has changed its speed until each frame, shape (T,). Speeds change in
-    collisions with particles that move, and at faces at a temperature.
+    """Return how often particles changed their speeds, by collisions and at thermal faces, until each frame
+    (T,).
     """
     scene, data = run.scene, run.data
     fixed = data["fixed_collisions"].values if "fixed_collisions" in data else 0.0
@@ -119,9 +116,7 @@ def changes_of_velocity(run: Run) -> np.ndarray:
 
 
 def is_mixed(run: Run, changes: float = RELAXED) -> bool:
-    """Return True if particles change their speeds often enough in the measured part of a run. Otherwise
-    means over the run depend on the velocities of its start.
-    """
+    """Return True if particles change their speeds so often that means do not depend on the start."""
     return bool(np.ptp(changes_of_velocity(run)) >= changes)
 
 
@@ -154,8 +149,8 @@ _SANTOS = "Santos, Yuste and Lopez de Haro 2002, an approximation"
 
 
 def compressibility_factor(run: Run) -> Expected | None:
-    """Compute the expected compressibility factor Z at fixed energy. For the Boltzmann equation Z is 1. For
-    the Enskog equation the result is exact, with N (N - 1) / 2 pairs.
+    """Compute the expected Z at fixed energy: 1 for the Boltzmann equation, exact for Enskog's with N (N - 1)
+    / 2 pairs.
     """
     equation = equation_of(run)
     if equation == BOLTZMANN:
@@ -227,8 +222,8 @@ def contact_values(run: Run) -> Expected | None:
 
 
 def pair_rates(run: Run) -> Expected | None:
-    """Compute the expected collision rate of a particle of the first species of each pair. Only collisions
-    with the second species j count. The particle has N_j - delta_ij partners of this species.
+    """Compute the expected rate of collisions of a particle of a pair's first species with the second's
+    others.
     """
     mixture = None if run.is_subset else _mixture_of_species(run)
     if mixture is None or (scale := scale_of_number(run, mixture)) is None:
@@ -253,11 +248,10 @@ def _mixture_of_species(run: Run) -> Mixture | None:
 
 
 def wall_pressure(run: Run, touched: np.ndarray) -> Expected | None:
-    """Compute the expected pressure on each wall (face,), at fixed distances of the walls. For hard particles
-    the result is the pressure of the fluid between hard walls. For point particles it is N k_B T divided by
-    the accessible volume. `touched` (d,) are the side lengths of the accessible volume. Particles that hardly
-    collide keep the energies along the axes that they have at the start: the scatter of these energies is
-    part of the uncertainty.
+    """Compute the expected pressure on each wall (face,), at fixed distances of the walls. For point
+    particles it is N k_B T divided by the accessible volume. `touched` (d,) are the side lengths of the
+    accessible volume. Particles that hardly collide keep the energies along the axes that they have at the
+    start: the scatter of these energies is part of the uncertainty.
     """
     gas, equation = run.scene.gas, equation_of(run)
     if gas is None or equation == ENSKOG:
@@ -347,9 +341,8 @@ def _densities(run: Run, edges: np.ndarray, mass: float, freedoms: int | None) -
 
 
 def expect(name: str, run: Run, *arguments: Any, **keywords: Any) -> Expected | None:
-    """Return the theory of an observable of a run; None if no theory exists. The uncertainty includes the
-    errors of the cells and steps of the engine. The theory's function is called with the run, `arguments` and
-    `keywords`.
+    """Return the theory of an observable of a run, with the errors of the engine; None if no theory
+    exists.
     """
     declared = observables.OBSERVABLES[name]
     if not declared.theory or run.about != FLOW:  # the theory describes motion relative to the flow
@@ -363,10 +356,7 @@ def expect(name: str, run: Run, *arguments: Any, **keywords: Any) -> Expected | 
 
 
 def describe(name: str, run: Run, *arguments: Any, **keywords: Any) -> dict[str, Any]:
-    """Return the units and the label of an observable, and its theoretical value for a run. For the arguments
-    see `expect`. The theory consists of values, their uncertainties, and a source. It is absent if no theory
-    exists.
-    """
+    """Return units and label of an observable, and its theory for a run, if any; see `expect`."""
     about: dict[str, Any] = dict(observables.about(name, run.dimension))
     if (expected := expect(name, run, *arguments, **keywords)) is None:
         return about

@@ -99,9 +99,7 @@ class Plates:
 
 
 def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
-    """Compute the steady heat (face,) that flows into faces, per area and time. `faces` are the numbers of
-    the faces.
-    """
+    """Compute the steady heat (face,) that flows into the numbered `faces`, per area and time."""
     if _in_equilibrium(run):
         return Expected(np.zeros(len(faces)), 0.0, "equilibrium")
     plates = plates_of(run)
@@ -117,9 +115,7 @@ def heat_flux(run: Run, faces: np.ndarray) -> Expected | None:
 
 
 def wall_shear(run: Run, faces: np.ndarray, axes: np.ndarray) -> Expected | None:
-    """Compute the steady momentum (face, component) that faces receive, per area and time. The components are
-    along `axes`.
-    """
+    """Compute the steady momentum (face, component along `axes`) that faces receive, per area and time."""
     if driven := _weight_on_faces(run, faces, axes):
         return driven
     plates = plates_of(run)
@@ -140,9 +136,7 @@ def _times(expected: Expected, factors: np.ndarray) -> Expected:
 
 
 def plates_of(run: Run, driven: bool = False) -> Plates | None:
-    """Return the plates of a run; None unless the gas is between two plates. If `driven` is True, the gas
-    must be one that a force drives along the plates.
-    """
+    """Return the plates of a run, or None; if `driven`, only those along which a force drives the gas."""
     scene, thermal = run.scene, run.scene.faces_of(Thermal)
     numbers = [number for number, _ in thermal]
     if not scene.alike or scene.features - _PLAIN - {"gravity"} or not run.moving.all():
@@ -175,9 +169,7 @@ def plates_of(run: Run, driven: bool = False) -> Plates | None:
 
 
 def _free_path(density: float, diameter: float, run: Run) -> float:
-    """Return the mean free path of spheres for the equation of the run. The result is 0 if the density
-    exceeds the range of the theory.
-    """
+    """Return the mean free path of spheres for the equation of the run; 0 beyond the range of the theory."""
     if equation_of(run) == BOLTZMANN:
         scaled = density / _POINTS ** (run.dimension - 1)
         filled = theory.packing_fraction(scaled, run.dimension, diameter * _POINTS)
@@ -314,8 +306,8 @@ def velocity(run: Run, axis: int, positions: np.ndarray) -> Expected | None:
 
 
 def _drift(run: Run) -> np.ndarray:
-    """Compute the velocity (d, 1) of the centre of mass. In a sheared gas, the velocity is relative to the
-    flow. The component along an axis is set to 0 if the momentum along this axis is not conserved.
+    """Compute the velocity (d, 1) of the centre of mass, relative to a sheared flow; 0 if momentum is not
+    conserved.
     """
     momentum, largest = np.zeros(run.dimension), 0.0
     for _, part in run.parts():
@@ -391,10 +383,9 @@ def _channel_velocity(plates: Plates, run: Run, axis: int, positions: np.ndarray
 
 
 def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.ndarray) -> Expected | None:
-    """Compute the net number (component,) of particles that cross a plane per time.
-
-    members : (n,), the particles that are counted when they cross the plane.
-    beyond : (T,), number of these particles beyond the plane.
+    """Compute the net number (component,) of particles that cross a plane per time. `members`: (n,), the
+    particles that are counted when they cross the plane. `beyond`: (T,), number of these particles beyond the
+    plane.
     """
     scene = run.scene
     if not scene.walls:
@@ -418,9 +409,7 @@ def flux(run: Run, axis: int, position: float, members: np.ndarray, beyond: np.n
 
 
 def _zero_flux(run: Run) -> Expected | None:
-    """Return the zero flux of a steady state. Return None if particles start in a part of the container, or
-    if a face is a piston, because gas then flows.
-    """
+    """Return the zero flux of a steady state; None if a part of the container or a piston lets gas flow."""
     scene = run.scene
     if scene.is_open or scene.has_piston or any(kind.region is not None for kind in scene.species):
         return None

@@ -75,9 +75,7 @@ def _of_points(run: Run, values: Any) -> Expected | None:
 
 
 def structure_factor(run: Run, wave_number: np.ndarray) -> Expected | None:
-    """Compute the expected S(k) (wave_number,). For equal spheres it is the approximation of Verlet and Weis;
-    for point particles it is 1.
-    """
+    """Compute the expected S(k) (wave_number,): Verlet and Weis for equal spheres, 1 for points."""
     equation, gas = equation_of(run), run.fluid
     if equation == BOLTZMANN:
         return _of_points(run, np.ones(len(wave_number)))
@@ -148,8 +146,8 @@ def chemical_potential(run: Run) -> Expected | None:
 
 
 def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | None:
-    """Compute the chemical potential of insertion among particles at independent positions. Return None if
-    the container is so small that a particle could overlap with two images of another.
+    """Compute the chemical potential among independent positions; None if a particle may overlap two
+    images.
     """
     between = 0.5 * np.add.outer(diameters, diameters)
     covered = np.array(
@@ -163,9 +161,8 @@ def _into_points(run: Run, diameters: np.ndarray, counts: np.ndarray) -> Any | N
 
 
 def temperature(run: Run) -> Expected | None:
-    """Return the equilibrium temperature, which is uniform. At a constant energy of N particles, a particle
-    that rises takes energy from all others. The uncertainty is the corresponding difference between the
-    lowest and the highest position.
+    """Return the equilibrium temperature, which is uniform. The uncertainty is the corresponding difference
+    between the lowest and the highest position.
     """
     scene = run.scene
     if scene.faces or scene.face_temperatures or not scene.has_equilibrium or not is_relaxed(run):
@@ -199,9 +196,8 @@ def density(run: Run, axis: int, edges: np.ndarray, species: int | None) -> Expe
 
 
 def _is_uniform(run: Run, axis: int) -> bool:
-    """Return True if the density of equal particles is uniform along a periodic axis. No face may distinguish
-    positions along the axis. The particles must not start in a part of the container. They must be a fluid: a
-    crystal stays where it is.
+    """Return True if the density of equal particles is uniform along a periodic axis: a fluid, no face and no
+    region.
     """
     scene = run.scene
     if scene.moving_axes or scene.ramps:

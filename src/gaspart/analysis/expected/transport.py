@@ -21,7 +21,7 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT
@@ -74,10 +74,9 @@ def velocity_autocorrelation(run: Run, time: np.ndarray) -> Expected | None:
 def diffusion(
     run: Run, ends: np.ndarray | None = None, window: np.ndarray | tuple[float, float] = _WINDOW
 ) -> Expected | None:
-    """Compute D of spheres in a periodic cube; see `diffusion_in_cube`.
-
-    ends : (2,), lags between which D is half of the slope of the mean-squared displacement along an axis.
-    window : (2,), first and last lag of the slope, in collisions of a particle.
+    """Compute D of spheres in a periodic cube; see `diffusion_in_cube`. `ends`: (2,), lags between which D is
+    half of the slope of the mean-squared displacement along an axis. `window`: (2,), first and last lag of
+    the slope, in collisions of a particle.
     """
     if ends is not None:
         displacement = mean_squared_displacement(run, ends, axes=True)
@@ -134,9 +133,8 @@ def diffusion_in_cube(
 
 
 def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
-    """Compute the difference between the long-time limit of D(t) and its value in a window. The window of the
-    slope is in collisions of a particle. The difference is due to the hydrodynamic modes of the container
-    (`theory.diffusion_modes`).
+    """Compute by hydrodynamic modes the difference between the limit of D(t) and its value in a window, in
+    collisions.
     """
     unit = gas.diameter / gas.thermal_speed
     times = np.linspace(float(window[0]), float(window[1]), 9) / bulk.collision_rate(gas, EXACT) / unit
@@ -145,9 +143,7 @@ def _after_window(gas: Gas, window: np.ndarray | tuple[float, float]) -> float:
 
 
 def mutual_diffusion(run: Run) -> Expected | None:
-    """Compute the mutual diffusion coefficient in Enskog's first approximation. The contact values depend on
-    the equation of the engine.
-    """
+    """Compute the mutual diffusion coefficient in Enskog's first approximation, for the engine's equation."""
     kinds, eta, d = run.scene.species, run.scene.packing_fraction, run.dimension
     if not all(kind.alike for kind in kinds) or eta > theory.HIGHEST_PACKING_FRACTION[d]:
         return None
@@ -193,9 +189,7 @@ def _transport(
 
 
 def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected bulk viscosity from fluctuations. In the Boltzmann equation it is 0, and the
-    result is the value of the engine's cells.
-    """
+    """Compute the expected bulk viscosity from fluctuations; for the Boltzmann equation that of the cells."""
     expected, engine = _transport(run, temperature, bulk.bulk_viscosity), engine_of(run)
     if expected is None or engine is None or engine.equation != BOLTZMANN:
         return expected
@@ -204,9 +198,7 @@ def bulk_viscosity(run: Run, temperature: float) -> Expected | None:
 
 
 def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected thermal conductivity from fluctuations. For a mixture of point particles the
-    result is the value of Chapman and Enskog.
-    """
+    """Compute the expected conductivity from fluctuations; Chapman and Enskog's for a mixture of points."""
     mixture = run.mixture
     if run.scene.alike or mixture is None or not temperature > 0.0:
         return _transport(run, temperature, bulk.thermal_conductivity, "conductivity")
@@ -217,9 +209,7 @@ def thermal_conductivity(run: Run, temperature: float) -> Expected | None:
 
 
 def shear_viscosity(run: Run, temperature: float) -> Expected | None:
-    """Compute the expected shear viscosity from fluctuations. For a sheared gas the result is the response to
-    a small shear rate.
-    """
+    """Compute the expected shear viscosity from fluctuations, or the response of a sheared gas."""
     if run.scene.shear_rate is None:
         return _transport(run, temperature, bulk.shear_viscosity, "viscosity")
     gas, equation = replace(run.scene, faces={}).gas, equation_of(run)

@@ -68,25 +68,22 @@ class CorrelatedMean:
 
 
 def correlated_mean(series: ArrayLike, minimum_blocks: int = 16, fitted: int = 1) -> CorrelatedMean:
-    """Compute the mean and standard error of a stationary correlated series.
-
-    fitted : number of parameters that were fitted to the series, including its mean; for the residuals of a
-        polynomial, the number of its coefficients.
-
-    The squared error is the spectrum at frequency 0 divided by the length. It is computed from an
-    autoregressive process that is fitted to the series, and whose order grows as the cube root of the length
-    (Berk, Ann. Stat. 2, 489 (1974)). The error is correct for independent, correlated and anticorrelated
-    series. Its own uncertainty, from the fitted coefficients, is expressed as degrees of freedom: 13 for 200
-    independent samples. The degrees of freedom are at most the number of changes between consecutive samples.
-    A constant series gives no information on its error: the error is 0 with one degree of freedom. Blocks
-    show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). The error
-    from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error from n blocks has the
-    relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block length that satisfies a
-    condition: every greater block length gives an error that is larger at most by its own uncertainty. The
-    error from these blocks is not used as the result, because it is the first error that is not clearly too
-    small. On average it would be too small by 5 to 40 % for 16 to 300 autocorrelation times. At least
-    `minimum_blocks` (>= 4) samples are needed. Samples at the start that do not fill a block do not belong to
-    any block.
+    """Compute the mean and standard error of a stationary correlated series. `fitted`: number of parameters
+    that were fitted to the series, including its mean; for the residuals of a polynomial, the number of its
+    coefficients. The squared error is the spectrum at frequency 0 divided by the length. It is computed from
+    an autoregressive process that is fitted to the series, and whose order grows as the cube root of the
+    length (Berk, Ann. Stat. 2, 489 (1974)). The error is correct for independent, correlated and
+    anticorrelated series. Its own uncertainty, from the fitted coefficients, is expressed as degrees of
+    freedom: 13 for 200 independent samples. The degrees of freedom are at most the number of changes between
+    consecutive samples. A constant series gives no information on its error: the error is 0 with one degree
+    of freedom. Blocks show whether the series is long enough (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461
+    (1989)). The error from blocks of 1, 2, 4 ... samples grows until the blocks are independent. The error
+    from n blocks has the relative uncertainty 1 / sqrt(2 (n-1)). The error is flat from the shortest block
+    length that satisfies a condition: every greater block length gives an error that is larger at most by its
+    own uncertainty. The error from these blocks is not used as the result, because it is the first error that
+    is not clearly too small. On average it would be too small by 5 to 40 % for 16 to 300 autocorrelation
+    times. At least `minimum_blocks` (>= 4) samples are needed. Samples at the start that do not fill a block
+    do not belong to any block.
     """
     if minimum_blocks < 4:
         raise ValueError(f"minimum_blocks: {minimum_blocks} (must be at least 4)")
@@ -165,9 +162,8 @@ def common_freedom(series: np.ndarray) -> float:
     degrees of freedom. For 40 cells of a dense fluid over 13 correlation times, 1.8 % of the values deviate
     by more than three standard deviations if each series has its own number of degrees of freedom. If this
     number is limited to the common number, only 0.7 % do so (`tests/analysis/test_small_numbers.py`).
-
-    series : (n, m), m series of n samples; constant series are ignored. The result is infinite if all series
-        are constant.
+    `series`: (n, m), m series of n samples; constant series are ignored. The result is infinite if all series
+    are constant.
     """
     number = len(series)
     centred = series - series.mean(axis=0)

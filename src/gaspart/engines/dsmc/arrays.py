@@ -45,9 +45,7 @@ def empty_particles(state: State) -> Particles:
 
 
 def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -> Grid:
-    """Return a grid with a number of cells along each axis, over the accessible volume. With open faces, the
-    grid has an additional counter for slots without a particle.
-    """
+    """Return a grid over the accessible volume; open faces add a counter for slots without a particle."""
     lower, upper = accessible(scene)
     per_side = np.array(cells, dtype=np.int64)
     strides = np.append(np.cumprod(per_side[:0:-1])[::-1], 1)
@@ -66,9 +64,8 @@ def grid_for(scene: Scene, state: State, cells: tuple[int, ...], threads: int) -
 
 
 def kinds_of(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of particles, and the kind number (N,) of each particle. The array of kinds has the
-    shape (K, 3); each row contains radius, mass and moment of inertia. If all particles are identical, this
-    array has the shape (0,).
+    """Return the kinds of particles, and the kind number (N,) of each particle. The kinds are rows of radius,
+    mass and moment of inertia, (K, 3); (0,) if all particles are identical.
     """
     properties = np.stack([state.radii, state.masses, state.moments_of_inertia], axis=1)
     if not len(properties) or (properties == properties[0]).all():
@@ -166,9 +163,8 @@ def moved_fields(fields: np.ndarray, before: Grid, after: Grid) -> np.ndarray:
 
 
 def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
-    """Return the axis along which slabs divide the cells, and the first cell of each slab. The array also
-    contains the end of the last slab. The result is an even number of slabs, each at least two `reach` wide,
-    or a single slab if this is impossible.
+    """Return the axis along which slabs divide the cells, and the first cell of each slab. The result is an
+    even number of slabs, each at least two `reach` wide, with the end of the last, or a single slab.
     """
     numbers = 2 * (per_side // (4 * reach))
     axis = int(numbers.argmax())
@@ -177,8 +173,8 @@ def slabs_of(per_side: np.ndarray, reach: np.ndarray) -> tuple[int, np.ndarray]:
 
 
 def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
-    """Return the arrays of the Enskog model for a state with several kinds of particles. Raises SceneError
-    for a scene that the model does not support.
+    """Return the arrays of the Enskog model for several kinds of particles; SceneError if it excludes the
+    scene.
     """
     d, cells, sigma = scene.dimension, len(grid.starts) - 1, 2.0 * scene.largest_radius
     if kinds > _MOST_DENSE_KINDS:

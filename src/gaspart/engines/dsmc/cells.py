@@ -64,8 +64,7 @@ _FINER = 2.0**-0.125
 
 def varying_axes(scene: Scene) -> tuple[bool, ...]:
     """Return flags (d,) of the axes along which the gas may vary. Between walls it varies across the walls
-    alone, if no unstable layers, clusters or initial regions can change this. Without walls all axes count,
-    because fluctuations vary along all of them.
+    alone, if no unstable layers, clusters or initial regions can change this.
     """
     walled = tuple(not around for around in scene.container.periodic)
     rolls = _falls(scene) and len(scene.face_temperatures) > 1
@@ -253,10 +252,8 @@ def widths_of(cells: tuple[int, ...], scene: Scene) -> np.ndarray:
 def medium_for(
     engine: DsmcSettings, scene: Scene, gas_rates: Rates | None = None, crowding: float = 1.0
 ) -> Medium:
-    """Return the gas of a scene for an engine.
-
-    gas_rates : rates at the mean density; default: at the start
-    crowding : density around a particle, averaged over particles, divided by the mean density
+    """Return the gas of a scene for an engine, with `gas_rates` at the mean density (default: at the start)
+    and the relative `crowding` around a particle.
     """
     found = gas_rates or rates(scene, engine.model == "enskog")
     return Medium(engine.model, scene, found.at_density(crowding), crowding * usual_count(scene))
@@ -279,11 +276,7 @@ def cells_for(engine: DsmcSettings, medium: Medium, step: float, crowding: float
 def remarks(
     engine: DsmcSettings, medium: Medium, cells: tuple[int, ...], step: float, when: str = ""
 ) -> dict[str, str]:
-    """Return a remark, by setting, about each setting that causes a notable error. A remark recommends other
-    values if their error is much smaller.
-
-    when : words that describe the time
-    """
+    """Return a remark, by setting, on notable errors, with better values; `when` describes the time."""
     texts, gas_rates = {}, medium.gas_rates
     error, shorter = medium.errors(cells, step).of("fluxes"), step
     if not engine.adapts_steps and step * gas_rates.frequency > LONGEST:

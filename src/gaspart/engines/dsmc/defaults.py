@@ -125,9 +125,7 @@ def may_speed_up(scene: Scene) -> bool:
 
 
 def is_hotter(state: State, gas_rates: Rates) -> bool:
-    """Return True if the initial state is so fast that steps must be adapted. The speeds relative to the mean
-    velocity of `state` are compared with the speeds in the scene's own initial state.
-    """
+    """Return True if the initial state is so fast that steps must be adapted."""
     velocities = state.velocities[np.isfinite(state.masses)]
     if not len(velocities):
         return False
@@ -136,8 +134,8 @@ def is_hotter(state: State, gas_rates: Rates) -> bool:
 
 
 def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest mean speed for each level of a step, shape (levels,). If the step is
-    not divided, there is only one level.
+    """Return lowest and highest mean speed for each level of a step, (levels,): one level if it is not
+    divided.
     """
     if not divided:
         return np.zeros(1), np.array([reach.speed(reach.most, step)])
@@ -152,10 +150,7 @@ def levels(reach: Reach, step: float, divided: bool) -> tuple[np.ndarray, np.nda
 def pace_for(
     scene: Scene, reach: Reach, step: float, divided: bool, present: np.ndarray | None = None
 ) -> Pace:
-    """Return the levels of a step as the kernels' `Pace`.
-
-    present : see `kernels.dsmc.model.Faces`
-    """
+    """Return the levels of a step as the kernels' `Pace`. `present`: see `kernels.dsmc.model.Faces`."""
     from gaspart.kernels.dsmc import model as pace
 
     pulls = scene.gravity or (0.0,) * scene.dimension
@@ -167,8 +162,8 @@ _TOO_LONG = f"lets particles fly more than {MOST:g} mean free paths, or {MOST:g}
 
 
 def check_step(reach: Reach, step: float, gas_rates: Rates) -> None:
-    """Raise SceneError for a step in which particles fly too far. A step is rejected if, during the step, a
-    particle would collide more than `MOST` times, or fly from wall to wall more than `MOST` times.
+    """Raise SceneError for a step in which a particle would collide, or fly from wall to wall, more than
+    `MOST` times.
     """
     if reach.way(gas_rates.speed, step) > reach.most:
         fit = reach.longest(gas_rates.speed, reach.most)
@@ -185,9 +180,7 @@ def too_fast(time: float, step: float, reach: Reach, pace: Pace) -> SimulationEr
 
 
 def step_for(engine: DsmcSettings, scene: Scene, gas_rates: Rates) -> float:
-    """Return the length of a step: the engine's setting or the recommended length. Raises SceneError if
-    nothing moves.
-    """
+    """Return the length of a step, set or recommended; SceneError if nothing moves."""
     if engine.time_step is not None:
         return engine.time_step
     reach = reach_of(scene, gas_rates.path)

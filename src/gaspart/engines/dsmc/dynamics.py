@@ -56,11 +56,7 @@ def check_scene(scene: Scene, state: State) -> None:
 
 
 def check_made(counts: np.ndarray, time: float, most: int) -> None:
-    """Raise SimulationError if steps could not be completed.
-
-    counts : see `kernels.dsmc.model`
-    most : maximum number of particles
-    """
+    """Raise SimulationError if steps could not be completed; `most` is the maximum number of particles."""
     from gaspart.kernels.dsmc.model import CROWDED, FAR, UNFINISHED
 
     if counts[:, UNFINISHED].any():
@@ -120,10 +116,7 @@ PARTS = {"stress": StressPart}
 def tally_parts(
     tallies: Iterable[OptionalTally], scene: Scene, state: State, threads: int
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    state : state at time 0
-    """
+    """Return the parts for optional tallies. `state`: state at time 0."""
     return [PARTS[tally.name](tally, scene, state, threads) for tally in tallies]
 
 
@@ -247,10 +240,7 @@ class DsmcDynamics(SteppedDynamics):
             check_made(self._workspace.counts, self.time, self._scene.capacity)
 
     def _run(self, level: int, number: int) -> int:
-        """Run the kernel for some parts of a step, and return the number of completed parts.
-
-        level : level of the division: the step has 2^level parts
-        """
+        """Run the kernel for some of the 2^level parts of a step, and return the number of completed ones."""
         now = self._resolution
         pace = now.pace and now.pace._replace(level=level)
         workspace = self._workspace._replace(dt=math.ldexp(self.time_step, -level))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines.dsmc.settings import DsmcSettings
 from gaspart.engines.engine import register
+from gaspart.keys import documented
 
 if TYPE_CHECKING:
     from gaspart.engines.dsmc.cells import Errors, Medium
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class DSMC(DsmcSettings):
@@ -26,23 +28,17 @@ class DSMC(DsmcSettings):
     In each step all particles move freely, and then pairs in the same cell collide. The result is bitwise
     identical for any number of threads.
 
-    Parameters
-    ----------
-    time_step : float, [time], optional
-        Length of a step. Default: a step of at most a fifth of the scene's mean free time.
-    cells_per_side : int or (d,) sequence of int, optional
-        Number of cells along each axis. Default: the cells with the smallest error; a single cell along
-        periodic axes on which the gas does not vary.
-    model : {"boltzmann", "enskog"}, default "boltzmann"
-        Collision model. "boltzmann": a dilute gas [1]_ [2]_. "enskog": a dense gas [3]_, in which the centres
-        of collision partners are one diameter apart, and the collision rate is multiplied by the contact
-        value.
-    adapt : {"nothing", "steps", "cells", "both"}, optional
-        Settings that the engine adapts during a run. "steps": steps are divided if speeds rise. "cells":
-        cells become narrower if the gas becomes denser somewhere. Default: all settings that are not
-        prescribed.
-    threads : int, default 1
-        Number of threads that share the work.
+    In the model "enskog" the centres of collision partners are one diameter apart, and the collision rate is
+    multiplied by the contact value. With `adapt` "steps" are divided if speeds rise, and "cells" become
+    narrower if the gas becomes denser somewhere.
+
+    The errors are described in docs/dsmc.md.
+
+    Literature: G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
+
+    Literature: M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
+
+    Literature: J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
     Raises
     ------
@@ -54,16 +50,6 @@ class DSMC(DsmcSettings):
     EventDriven : Exact collisions of hard particles.
     TimeStepped : Time steps with overlap resolution.
 
-    Notes
-    -----
-    The errors are described in docs/dsmc.md.
-
-    References
-    ----------
-    .. [1] G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994).
-    .. [2] M. S. Ivanov and S. V. Rogasinsky, Sov. J. Numer. Anal. Math. Modelling 3, 453 (1988).
-    .. [3] J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
-
     Examples
     --------
     >>> import gaspart as gp
@@ -72,33 +58,8 @@ class DSMC(DsmcSettings):
     """
 
     def for_scene(self, scene: Scene, interval: float | None = None) -> DSMC:
-        """Return a copy with cells and time step chosen for a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        interval : float, [time], optional
-            Time interval that must be an integer number of steps.
-
-        Returns
-        -------
-        DSMC
-            The engine.
-
-        Raises
-        ------
-        SceneError
-            If nothing moves, or `cells_per_side` does not fit the dimension.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> engine = gp.DSMC().for_scene(scene, interval=1.0)
-        >>> engine.time_step, engine.cells_per_side
-        (0.5, (7, 7, 7))
+        """Return a copy with cells and time step, a fraction of `interval`, for a scene. Raises SceneError if
+        nothing moves, or `cells_per_side` does not fit the dimension.
         """
         _, cells, step = self._chosen(scene)
         if self.time_step is None and interval is not None:
@@ -107,29 +68,7 @@ class DSMC(DsmcSettings):
 
     def predictions(self, scene: Scene) -> dict[str, float]:
         """Return the relative error of the shear viscosity due to cells and steps, and of other fluxes.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        dict of str to float
-            ``viscosity_error``: relative excess of the viscosity.
-
-        Raises
-        ------
-        SceneError
-            If nothing moves, or `cells_per_side` does not fit the dimension.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.DSMC().predictions(scene)["viscosity_error"], 3)
-        0.105
+        Raises SceneError if nothing moves, or `cells_per_side` does not fit the dimension.
         """
         return {"viscosity_error": self.bias(scene, "fluxes")}
 
@@ -137,76 +76,19 @@ class DSMC(DsmcSettings):
         return max(self._chosen(scene)[1])
 
     def added_bulk_viscosity(self, scene: Scene) -> float:
-        """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone.
-
-        Parameters
-        ----------
-        scene : Scene
-            Scene of particles with one mass.
-
-        Returns
-        -------
-        float, [mass length^(2-d)/time]
-            (A / d^2) n m nu times the sum of the squared sides of a cell, where n is the number density, nu
-            the collision rate, and A = 1/18 for spheres and 1/12 for discs.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.DSMC().added_bulk_viscosity(scene), 4)
-        0.0042
+        """Return the bulk viscosity of the Boltzmann model, which is due to its cells alone: (A / d^2) n m nu
+        times the sum of the squared sides of a cell, with the number density n, the collision rate nu, and A
+        = 1/18 for spheres and 1/12 for discs [mass length^(2-d)/time].
         """
         medium, cells, _ = self._chosen(scene)
         return medium.bulk_viscosity(cells)
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Bound the relative error of a quantity due to cells, steps and lost collisions.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        kind : {"rates", "paths", "fluxes", "walls"}
-            Quantities on which the observable depends: rates of collisions, paths of particles, or fluxes of
-            momentum and heat.
-
-        Returns
-        -------
-        float, [1]
-            The bias; see docs/dsmc.md for its parts.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> [round(gp.DSMC().bias(scene, kind), 4) for kind in ("rates", "paths", "fluxes")]
-        [0.0, 0.0334, 0.1052]
-        """
+        """Bound the relative error of a quantity due to cells, steps and lost collisions (docs/dsmc.md)."""
         return self.errors(scene).of(kind)
 
     def errors(self, scene: Scene) -> Errors:
-        """Return the parts of the errors due to cells and steps.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        Errors
-            Relative errors, see docs/dsmc.md.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> round(gp.DSMC().errors(gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])).step, 4)
-        0.0021
-        """
+        """Return the parts of the relative errors due to cells and steps (docs/dsmc.md)."""
         medium, cells, step = self._chosen(scene)
         return medium.errors(cells, step)
 

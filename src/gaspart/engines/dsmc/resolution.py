@@ -63,9 +63,7 @@ def may_crowd(scene: Scene) -> bool:
 
 
 def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> float:
-    """Return the relative density around particles at positions (N, d). This density is computed from the
-    numbers of pairs in the cells. In a uniform gas with the usual number of particles it is 1.
-    """
+    """Return the density around particles at (N, d) over the usual one, from the pairs in cells."""
     lower, upper = accessible(scene)
     coordinates = (positions - lower) / (upper - lower) * cells
     at = np.clip(coordinates.astype(np.int64), 0, np.array(cells) - 1)
@@ -78,10 +76,7 @@ def crowding(positions: np.ndarray, cells: tuple[int, ...], scene: Scene) -> flo
 
 
 def next_level(level: int, times: float) -> int:
-    """Return the new density level for a gas with the relative density `times`.
-
-    level : present density level
-    """
+    """Return the new density level, from the present one, for a gas with the relative density `times`."""
     exact = math.log2(max(times, 1.0))
     return level if abs(exact - level) <= _CHANGED else min(round(exact), HIGHEST)
 
@@ -98,9 +93,7 @@ def varies_along(state: State, axis: int, length: float) -> bool:
 
 
 class Resolution:
-    """Present cells and step lengths of a run. The constructor raises SceneError for settings that do not fit
-    the scene.
-    """
+    """Present cells and step lengths of a run; the constructor raises SceneError if they do not fit."""
 
     def __init__(
         self, engine: DsmcSettings, scene: Scene, state: State, kinds: int, opened: Open | None = None
@@ -161,11 +154,10 @@ class Resolution:
             self._warn(self._medium(crowded), f" where most particles are at time {time:g}")
 
     def level(self, particles: Particles, position: int, time: float) -> int:
-        """Return the level of division for the next part of a step. The speeds of the particles determine the
-        level. If the completed fraction of the step is not a multiple of a part at this level, a higher level
-        is returned. Raises SimulationError if the particles are too fast for every level.
-
-        position : completed fraction of the step, in units of the shortest part
+        """Return the level of division for the next part of a step. If the completed fraction of the step is
+        not a multiple of a part at this level, a higher level is returned. Raises SimulationError if the
+        particles are too fast for every level. `position`: completed fraction of the step, in units of the
+        shortest part.
         """
         if self.pace is None:
             return 0
@@ -182,10 +174,7 @@ class Resolution:
             self._warn(replace(self._medium(self.crowded), gas_rates=gas_rates), f" by time {time:g}")
 
     def _warn(self, medium: Medium, when: str) -> None:
-        """Warn once about each setting that causes a notable error.
-
-        when : words that describe the time in the warning
-        """
+        """Warn once about each setting with a notable error; `when` describes the time."""
         for key, text in remarks(self._engine, medium, self.cells, self.step, when).items():
             if key not in self._warned:
                 self._warned.add(key)

@@ -23,12 +23,17 @@ class DsmcSettings(Engine):
 
     time_step: float | None = field(
         default=None,
-        metadata=declare(positive("duration of a step; by default a fifth of a mean free time, at most")),
+        metadata=declare(
+            positive("duration of a step [time]; by default a fifth of a mean free time, at most")
+        ),
     )
     cells_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declare(
-            per_side("number of cells, or one for each axis; by default those with the smallest error")
+            per_side(
+                "number of cells, or one for each axis; by default those with the smallest error, a "
+                "single one along periodic axes on which the gas does not vary"
+            )
         ),
     )
     model: str = field(
@@ -85,10 +90,8 @@ class DsmcSettings(Engine):
         return self._with(time_step=step, adapts=(False, self.adapts_cells))
 
     def _with(self, adapts: tuple[bool, bool], **settings: Any) -> Self:
-        """Return a copy with these settings changed.
-
-        adapts : True if steps and cells are adapted; `adapt` is set only if this does not follow from the
-            other settings
+        """Return a copy with these settings changed. `adapts`: True if steps and cells are adapted; `adapt`
+        is set only if this does not follow from the other settings.
         """
         plain = replace(self, **settings, adapt=None)
         if adapts == (plain.adapts_steps, plain.adapts_cells):

@@ -24,13 +24,18 @@ from gaspart.engines.event.tally import (
 )
 from gaspart.engines.features.faces import (
     FacesPart,
+    MovingWallPart,
     OpenPart,
     PistonPart,
     VibratingPart,
+    WarmWallsPart,
     crowded_error,
     has_special_faces,
+    interior_walls,
+    moving_wall_of,
     reservoirs_of,
     special_faces,
+    warm_walls,
     with_room,
 )
 from gaspart.engines.features.law import (
@@ -51,13 +56,6 @@ from gaspart.engines.features.part import (
     write_parts,
 )
 from gaspart.engines.features.tallies import EventPerAreaPart
-from gaspart.engines.features.walls import (
-    MovingWallPart,
-    WarmWallsPart,
-    interior_walls,
-    moving_wall_of,
-    warm_walls,
-)
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event import neighbour_lists as lists
@@ -95,10 +93,7 @@ def particles_of(state: State, boxes: Boxes) -> Particles:
 def event_model(
     scene: Scene, state: State, seed: int | tuple[int, ...], boxes: Boxes, largest: float
 ) -> tuple[Model, float]:
-    """Return the model of a scene for the kernels, and its unit of mass.
-
-    largest : largest radius of the particles that are sorted into boxes
-    """
+    """Return the kernels' model of a scene and its unit of mass; `largest` radius of particles in boxes."""
     law = contact_law(scene, state)
     law = law._replace(duration=contact_duration(scene, law)) if law else None
     unit_mass, masses = (1.0, None) if law else scaled_masses(state.masses)
@@ -144,9 +139,7 @@ def event_parts(
 
 
 def wrap(positions: np.ndarray, images: np.ndarray, space: Space) -> None:
-    """Move particles to a periodic face if they are beyond it only because of rounding. These particles reach
-    the face exactly at the present time.
-    """
+    """Move particles that rounding put beyond a periodic face to the face, which they reach just now."""
     lengths = np.array(space.lengths)
     outside = ((positions < 0.0) | (positions >= lengths)) & space.periodic
     if not outside.any():
@@ -238,11 +231,9 @@ class EventDynamics(Dynamics):
         """Process events up to time `until`, at most `max_events` of them. Events are collisions, wall hits,
         and attempted entries through open faces. Raises SimulationError, with the state saved, in two cases.
         The first is a collapse: infinitely many collisions in a finite time. The second is a run without an
-        end time in which no event occurs during a thousand flights through the container.
-
-        max_work : maximum work: the sum of the numbers of events, box crossings and predictions at the start
-            of epochs. At this limit, the call returns before the time `until`. The work exceeds the limit by
-            at most a factor of 2.
+        end time in which no event occurs during a thousand flights through the container. `max_work`: maximum
+        work: the sum of the numbers of events, box crossings and predictions at the start of epochs. At this
+        limit, the call returns before the time `until`. The work exceeds the limit by at most a factor of 2.
         """
         remaining, work = (
             np.iinfo(np.int64).max if number is None else number for number in (max_events, max_work)
@@ -304,18 +295,16 @@ class EventDynamics(Dynamics):
         self._clock = until - self._start
 
     def _run(self, record: Record | None, limits: tuple[float, int, int]) -> tuple[int, int, int, float]:
-        """Run the kernel, and return the reason why it stopped, its counts, and the last time. The counts are
-        the numbers of processed events and crossings. The time is the time of the last event.
+        """Run the kernel, and return why it stopped, numbers of events and crossings, and the last event's
+        time.
         """
         monitors = Monitors(record, self._collapse.watch)
         scene = self._particles, self._queue, self._boxes, self._model, self._tally.arrays
         return loop.run(*scene, monitors, limits, () if self._queue is None else None)
 
     def _next_epoch(self, endless: bool) -> float:
-        """Restart the clocks from zero and predict all events again. Returns the length of the previous
-        epoch.
-
-        endless : True if only a number of events ends the run
+        """Restart the clocks and predict all events; return the previous length. `endless`: no end
+        in time.
         """
         length = self._epoch
         check_clocks(self._start, self._epoch)
@@ -337,9 +326,8 @@ class EventDynamics(Dynamics):
         return length
 
     def _base_from(self, present: float) -> float:
-        """Return the length of the next epoch, before `Epochs.quiet` extends it.
-
-        present : length of the previous epoch, also before the extension
+        """Return the next epoch's length, before `Epochs.quiet` extends it, from the previous one
+        likewise.
         """
         stored = sum(part.stored for part in self._parts)
         return self._epochs.base(self._flights["velocity"], stored, present)

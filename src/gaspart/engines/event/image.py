@@ -58,9 +58,7 @@ def check_scene(scene: Scene) -> None:
 
 
 class _Arrays(EventDynamics):
-    """Arrays of the kernels for a scene, without predictions of events, which a page makes itself. `_numbers`
-    and `_image` read them.
-    """
+    """Arrays of the kernels for a scene, without predictions of events; `_numbers` and `_image` read them."""
 
     def __init__(self, scene: Scene, state: State, seed: int) -> None:
         super().__init__(scene, state, seed, "boxes", None)
@@ -156,10 +154,7 @@ def _words(kind: Any, value: Any, address: Callable[[np.ndarray], int]) -> list[
 
 
 def image_of(scene: Scene, state: State, seed: int, scaled: bool = True) -> Image:
-    """Return the image of a scene; positions and velocities of the state are not in it.
-
-    scaled : False if the addresses `scaled` are not needed
-    """
+    """Return the image of a scene without positions and velocities; `scaled`: with these addresses."""
     check_scene(scene)
     arrays = _Arrays(scene, state, seed)
     arrays._flights["position"] = arrays._flights["velocity"] = 0.0

@@ -83,11 +83,7 @@ def chosen_search(scene: Scene, search: str, boxes_given: bool) -> str:
 
 
 def neighbour_lists(scene: Scene, room: int = 0, per_cell: int = 1) -> NeighbourLists:
-    """Return empty neighbour lists for a scene.
-
-    room : number of words per list
-    per_cell : number of pages per cell, with 8 particles each
-    """
+    """Return empty lists, of `room` words and `per_cell` pages of 8 particles per cell."""
     from gaspart.kernels.event.neighbour_lists import empty_neighbour_lists
 
     margin, reach = distances(scene)

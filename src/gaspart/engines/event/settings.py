@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gaspart.engines.engine import Engine, register
 from gaspart.errors import SceneError
-from gaspart.keys import choice, declare, per_side
+from gaspart.keys import choice, declare, documented, per_side
 from gaspart.scene.features import FEATURES
 from gaspart.state.tally import TALLIES
 
@@ -21,23 +21,25 @@ if TYPE_CHECKING:
 SEARCHES = ("automatic", "boxes", "lists", "direct", "pairs")
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class EventDriven(Engine):
     """Event-driven engine: exact collisions of hard particles, from one event to the next.
 
-    The results of all searches are bitwise identical. The method is described in [1]_ and [2]_.
+    The results of all searches are bitwise identical. The method is described in (Spencer (2021 and 2022))
+    and (B. D. Lubachevsky, J. Comput. Phys. 94, 255 (1991)).
 
-    Parameters
-    ----------
-    search : {"automatic", "boxes", "lists", "direct", "pairs"}, default "automatic"
-        Method of finding the next event. "boxes": a queue contains the next event of each particle, which is
-        searched in neighbouring boxes. "lists": the same queue, but with searches in neighbour lists.
-        "automatic": the faster of these two at the density of the scene. "direct": a single box, so that each
-        search tests all particles. "pairs": before every event all pairs are tested ([1]_, section 3.1), as a
-        reference.
-    boxes_per_side : int or (d,) sequence of int, optional
-        Number of boxes along each axis. Default: 0.5 to 1.5 boxes per particle.
+    With `search` "boxes" a queue contains the next event of each particle, which is searched in neighbouring
+    boxes; "lists" searches neighbour lists instead; "automatic" is the faster of these two at the density of
+    the scene. "direct" is a single box, so that each search tests all particles; with "pairs" all pairs are
+    tested before every event, as a reference.
+
+    A box is at least as wide as the diameter of the largest particle in the boxes. A few oversized particles
+    can be excluded from the boxes. The search of a small particle near an oversized particle then tests this
+    particle separately. By default the largest particles are excluded if this reduces the number of particles
+    examined in a search by a quarter (`state.boxes`). With `boxes_per_side`, particles wider than a box are
+    excluded; they must be fewer than the other particles.
 
     Raises
     ------
@@ -48,19 +50,6 @@ class EventDriven(Engine):
     --------
     TimeStepped : Time steps with overlap resolution.
     DSMC : Collision partners drawn at random.
-
-    Notes
-    -----
-    A box is at least as wide as the diameter of the largest particle in the boxes. A few oversized particles
-    can be excluded from the boxes. The search of a small particle near an oversized particle then tests this
-    particle separately. By default the largest particles are excluded if this reduces the number of particles
-    examined in a search by a quarter (`state.boxes`). With `boxes_per_side`, particles wider than a box are
-    excluded; they must be fewer than the other particles.
-
-    References
-    ----------
-    .. [1] Spencer (2021 and 2022).
-    .. [2] B. D. Lubachevsky, J. Comput. Phys. 94, 255 (1991).
 
     Examples
     --------
@@ -74,7 +63,9 @@ class EventDriven(Engine):
     )
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
-        metadata=declare(per_side("number of boxes, or one for each axis; by default chosen")),
+        metadata=declare(
+            per_side("number of boxes, or one for each axis; by default 0.5 to 1.5 boxes per particle")
+        ),
     )
 
     name: ClassVar[str] = "event"

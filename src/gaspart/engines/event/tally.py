@@ -31,11 +31,7 @@ def tally_parts(
     scene: Scene,
     state: State,
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    flights : (N,), flights of the particles
-    state : initial state
-    """
+    """Return the parts for optional tallies, from `flights` (N,) of the particles and the initial state."""
     return [PARTS[tally.name](tally, flights, model, unit_mass, scene, state) for tally in tallies]
 
 
@@ -49,10 +45,7 @@ class EventTally:
         self.lost = np.zeros(2)
 
     def reset(self, time: float, clock: float) -> None:
-        """Reset the counters at a time, after the energies removed so far are stored.
-
-        clock : this time on the clocks of the epoch
-        """
+        """Reset the counters at a time `clock` of the epoch, after energies removed so far are stored."""
         self.lost = np.array([self.dissipated, self.exchanged])
         self.begin(time, clock)
 
@@ -143,9 +136,7 @@ class Epochs:
     def _equipartition_speed(self, velocities: np.ndarray, stored: float) -> float:
         """Return the rms speed after equipartition of the energy. The present rms speed would be too low: in
         a gas at rest, a few heavy or spinning particles can transfer their energy to all others within an
-        epoch.
-
-        stored : energy of the particles in other forms than translation
+        epoch. `stored`: energy of the particles in other forms than translation.
         """
         if not len(self._masses):
             return 0.0
@@ -154,8 +145,8 @@ class Epochs:
         return math.sqrt(2.0 * energy / len(self._masses) * float((1.0 / self._masses).mean()))
 
     def base(self, velocities: np.ndarray, stored: float, present: float = 0.0) -> float:
-        """Return the epoch length for velocities (N, d) and a `stored` energy. The stored energy is added to
-        the translational energy. The length `present` is retained under the condition in `length`.
+        """Return the epoch length for velocities (N, d) and a `stored` energy. The length `present` is
+        retained under the condition in `length`.
         """
         length = self.length(self.speed(velocities), present)
         return min(length, self.length(self._equipartition_speed(velocities, stored), length))
@@ -215,11 +206,8 @@ _COLLAPSE = "an inelastic collapse, or a stack at rest, which a contact_duration
 
 def check_progress(time: float, spent: float, epoch: float) -> None:
     """Raise SimulationError if `MANY` events span less time than the clocks can resolve. The order of such
-    events would depend only on rounding.
-
-    time : present time
-    spent : duration of these events
-    epoch : length of the epoch
+    events would depend only on rounding. `time`: present time. `spent`: duration of these events. `epoch`:
+    length of the epoch.
     """
     if spent < MANY * _RESOLVED * epoch:
         raise SimulationError(
@@ -238,10 +226,7 @@ def check_clocks(start: float, epoch: float) -> None:
 
 
 def check_events(time: float, quiet: int, flights: float) -> None:
-    """Raise SimulationError after too many consecutive `quiet` epochs without an event.
-
-    flights : number of flights through the container per epoch, see `Epochs.flights`
-    """
+    """Raise SimulationError after too many `quiet` epochs, of `flights` through the container each."""
     if quiet <= _QUIET or (0.0 < quiet * flights < _FLIGHTS and quiet <= _QUIET_TOGETHER):
         return
     cause = "particles move together" if 0.0 < quiet * flights < _FLIGHTS else "particles miss one another"
@@ -275,10 +260,7 @@ class CollapsePart(Part):
         return model
 
     def error(self, time: float) -> SimulationError:
-        """Return the error for a scene in which a particle has had too many contacts.
-
-        time : present time
-        """
+        """Return the error for a scene in which a particle has had too many contacts up to `time`."""
         watch = self.watch
         assert watch is not None  # otherwise the kernels would have counted none
         return SimulationError(

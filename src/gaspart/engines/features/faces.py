@@ -1,4 +1,4 @@
-"""Special faces of the container, for all engines, and their effects on particles."""
+"""Faces and interior walls: their arrays, energies, and events of those that move."""
 
 from __future__ import annotations
 
@@ -9,18 +9,32 @@ from typing import Any
 import numpy as np
 
 from gaspart.engines.features.part import Part
-from gaspart.errors import SimulationError
+from gaspart.errors import SceneError, SimulationError
 from gaspart.kernels import model as kernels
-from gaspart.kernels.model import NONE, STICKY, Faces, Model, Motion, Ramp, Sliding
+from gaspart.kernels.model import (
+    NONE,
+    STICKY,
+    Faces,
+    InteriorWalls,
+    Model,
+    Motion,
+    MovingWall,
+    Ramp,
+    Sliding,
+    WarmWalls,
+)
 from gaspart.kernels.obstacles.face import RULES
-from gaspart.kernels.obstacles.moving import advance_piston
+from gaspart.kernels.obstacles.moving import advance_piston, advance_wall
 from gaspart.kernels.obstacles.opening import NUMBERS, schedule_first
 from gaspart.kernels.physics.running_sum import values
 from gaspart.scene.boundaries import attempt_rate
 from gaspart.scene.faces import Open, Vibrating
 from gaspart.scene.scene import Scene
 from gaspart.scene.surfaces import FACES
+from gaspart.scene.walls import MOVING_WALL
+from gaspart.state.boxes import Boxes
 from gaspart.state.initial import places_in_wells, well_energies, wells_of
+from gaspart.state.insertion import wall_rows, walls_near
 from gaspart.state.random import key_of
 from gaspart.state.state import State
 
@@ -33,9 +47,7 @@ _ARRAYS = "positions", "velocities", "images", "radii", "masses", "species", "sp
 
 
 def with_room(scene: Scene, state: State) -> State:
-    """Return a state whose arrays have an entry for every possible particle number. Entries of unused numbers
-    have the position NaN and the velocity 0. Without open faces the state is returned unchanged.
-    """
+    """Return a state with entries for every possible particle, unused ones at NaN and at rest."""
     free = scene.capacity - state.count
     if free == 0:
         return state
@@ -82,8 +94,7 @@ def crowded_error(time: float, most: int) -> SimulationError:
 
 class OpenPart(Part):
     """Open faces of a scene. The arrays contain the particles in the container, the number of entries since
-    the counters were reset, and the number and the time of the next attempted entry. This time is on the
-    clocks of the epoch.
+    the counters were reset, and the number and the time of the next attempted entry.
     """
 
     def __init__(self, scene: Scene, inside: kernels.Open, reservoirs: kernels.Reservoirs | None) -> None:
@@ -136,8 +147,8 @@ def piston_of(scene: Scene, state: State, unit_mass: float) -> kernels.Piston | 
 
 
 class PistonPart(Part):
-    """Piston of a scene. A hit on a piston can add at most twice the piston's speed to the speed of a
-    particle. The piston's speed is prescribed or results from the external pressure.
+    """Piston of a scene; a hit adds at most twice its speed, prescribed or by its pressure, to a
+    particle's.
     """
 
     def __init__(self, piston: kernels.Piston, scene: Scene) -> None:
@@ -200,9 +211,7 @@ def motion_of(scene: Scene) -> Motion | None:
 
 
 class VibratingPart(Part):
-    """Faces with a prescribed vibration. A hit on such a face adds at most twice the speed of the face to the
-    speed of a particle.
-    """
+    """Faces with a prescribed vibration; a hit adds at most twice their speed to a particle's."""
 
     def __init__(self, scene: Scene, motion: Motion) -> None:
         super().__init__({})
@@ -210,9 +219,7 @@ class VibratingPart(Part):
         self.gained = (2.0 * max(face.greatest_speed for _, face in self._faces)) ** 2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the oscillation at time 0 of the clocks. The phase is computed as the remainder of a
-        division, which is exact, so that it does not drift.
-        """
+        """Continue the oscillation at time 0 of the clocks, by an exact remainder that does not drift."""
         scene, motion = self._scene, self._motion
         motion.epoch[0] = length
         for n, face in self._faces:
@@ -232,9 +239,7 @@ WALL_DRAWS = 2
 
 
 def kinds_and_levels(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds (2d,) and levels (2d,) of the faces for the kernels. The level is the temperature of a
-    thermal face, or the momentum of a sticky face.
-    """
+    """Return kinds (2d,) and levels (2d,) of faces: temperature of a thermal, momentum of a sticky one."""
     surfaces = (scene.faces.get(name) for name in FACES[: 2 * scene.dimension])
     names, levels = zip(*(surface.rule if surface else ("hard", 0.0) for surface in surfaces), strict=True)
     return np.array([RULES[name] for name in names], dtype=np.int64), np.array(levels, dtype=float)
@@ -276,9 +281,7 @@ def has_special_faces(scene: Scene) -> bool:
 
 
 def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> Faces:
-    """Return the special faces as the kernels' `Faces`. Masses and energies are in the unit that `unit_mass`
-    defines.
-    """
+    """Return the special faces as the kernels' `Faces`, in units that contain `unit_mass`."""
     kind, level = kinds_and_levels(scene)
     depths, widths = wells_of(scene)
     velocities, ramp = sliding_velocities(scene), ramp_of(scene)
@@ -302,9 +305,7 @@ def special_faces(scene: Scene, state: State, seed: int | tuple[int, ...], unit_
 
 
 def face_energy(scene: Scene) -> float:
-    """Return an upper estimate of the energy that a face or wall gives to a particle. The estimate is the
-    largest energy that a particle gains from a thermal face, a thermal wall or a well.
-    """
+    """Return the largest energy that a particle gains from a thermal face or wall, or a well."""
     hottest = max(scene.face_temperatures, default=0.0)
     deepest = max((getattr(face, "depth", 0.0) for face in scene.faces.values()), default=0.0)
     fastest = max((math.hypot(*(face.velocity or ())) for _, face in scene.sliding_faces), default=0.0)
@@ -345,3 +346,83 @@ class FacesPart(Part):
             return {}
         shear = values(self._shear).reshape(-1, self._scene.dimension) * self._unit_mass
         return {"wall_shear": np.pad(shear, ((0, len(self._scene.walls)), (0, 0)))}
+
+
+# Interior walls.
+
+
+_INTERIOR_DRAWS = 6  # stream number of these random numbers, after those of the engines
+
+
+def interior_walls(
+    scene: Scene, boxes: Boxes, largest_radius: float, warm: WarmWalls | None, moving: MovingWall | None
+) -> InteriorWalls:
+    """Return the interior walls and a list of those at rest near each box, for radii up to
+    `largest_radius`.
+    """
+    rows, wall = wall_rows(scene)
+    if moving:
+        rows, wall = rows[:0], wall[:0]
+    return InteriorWalls(rows, wall, *walls_near(rows, boxes, largest_radius), largest_radius, warm, moving)
+
+
+def warm_walls(scene: Scene, state: State, seed: int | tuple[int, ...], unit_mass: float) -> WarmWalls | None:
+    """Return the thermal walls, with masses in units of `unit_mass`; None if all are hard."""
+    level = np.array([wall.temperature or 0.0 for wall in scene.walls])
+    if not level.any():
+        return None
+    draws = np.zeros(state.count, dtype=np.int64)
+    return WarmWalls(level / unit_mass, draws, key_of(seed, _INTERIOR_DRAWS))
+
+
+class WarmWallsPart(Part):
+    """State of thermal interior walls: the number of random draws of each particle.
+
+    lightest : mass of the lightest particle
+    """
+
+    def __init__(self, scene: Scene, warm: WarmWalls, lightest: float) -> None:
+        super().__init__({"wall_draws": warm.draws})
+        self.gained = face_energy(scene) / lightest
+
+
+# Moving wall across the container, between two gases.
+
+
+def moving_wall_of(scene: Scene, state: State, unit_mass: float) -> kernels.MovingWall | None:
+    """Return the kernels' moving wall; None if the scene has no moving wall. The mass of the wall is in units
+    of `unit_mass`. Raises SceneError unless there are particles on both sides, because otherwise the wall
+    would leave the container.
+    """
+    wall = scene.moving_wall
+    if wall is None or state.piston is None:
+        return None
+    position, velocity = state.piston
+    side = np.where(state.positions[:, wall.axis] > position, 1.0, -1.0)
+    if len(np.unique(side)) < 2:
+        raise SceneError(f"{MOVING_WALL}.mass", wall.mass, "a wall that moves needs particles on both sides")
+    return kernels.MovingWall(wall.axis, wall.mass / unit_mass, side, np.array([position, velocity, 0.0]))
+
+
+class MovingWallPart(Part):
+    """Motion and energy of the moving wall; masses are in units of `unit_mass`."""
+
+    def __init__(self, wall: kernels.MovingWall, unit_mass: float) -> None:
+        super().__init__({"piston": wall.motion})
+        self._motion, self._mass = wall.motion, wall.mass * unit_mass
+
+    @property
+    def stored(self) -> float:
+        return 0.5 * self._mass * float(self._motion[kernels.PISTON_VELOCITY]) ** 2
+
+    def set_clock(self, clock: float) -> None:
+        self._motion[kernels.PISTON_CLOCK] = clock
+
+    def end_epoch(self, length: float, start: float) -> None:
+        advance_wall(self._motion, length)
+        self.set_clock(0.0)
+
+    def write(self, state: State, clock: float) -> None:
+        motion = self._motion.copy()
+        advance_wall(motion, clock)
+        state.piston = motion[[kernels.PISTON_PLACE, kernels.PISTON_VELOCITY]]

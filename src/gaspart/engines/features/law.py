@@ -24,8 +24,8 @@ _BISECTIONS = 100  # until adjacent floating-point numbers enclose the damping o
 
 
 def contact_law(scene: Scene, state: State) -> ContactLaw | None:
-    """Return the collision law for the kernels; None for elastic, smooth collisions. If particles are fixed,
-    a law is always returned.
+    """Return the collision law for the kernels; None for elastic, smooth collisions without fixed
+    particles.
     """
     rule = scene.restitution or Restitution()
     if rule.smooth_and_elastic and not np.isinf(state.masses).any():
@@ -144,8 +144,8 @@ def slowest_that_moves(scene: Scene) -> float:
 
 
 def _tilt(gravity: tuple[float, ...]) -> np.ndarray:
-    """Return the accelerations (2, 3) or (4, 3) of gravity, tilted in all directions. A particle counts as
-    supported if it is supported against each of these accelerations.
+    """Return gravity tilted in all directions, (2, 3) or (4, 3), against each of which a support
+    must hold.
     """
     acceleration = np.zeros(3)
     acceleration[: len(gravity)] = gravity
@@ -184,11 +184,7 @@ class Jams:
         tally: Tally,
         time: float,
     ) -> bool:
-        """Fix the particles that belong to a jam at this time, for positions (N, d). Returns True if events
-        must be predicted again.
-
-        stays : (N,), True if a particle has not moved away from its position
-        """
+        """Fix the particles of jams, for positions (N, d); `stays` (N,): unmoved. True if events change."""
         from gaspart.kernels.event.jams import (
             HELD,
             PRESSED,
@@ -231,9 +227,7 @@ _ARRAYS = ("latest", "met", "island", "contacts", "elastic", "kept")
 
 
 def contact_duration(scene: Scene, law: ContactLaw) -> ContactDuration | None:
-    """Return the initial data for the rule of lasting contacts; None without this rule. Without this rule
-    every contact dissipates.
-    """
+    """Return the initial data for lasting contacts; None if every contact dissipates."""
     return lasting_contacts(scene, law) if scene.contact_duration > 0.0 else None
 
 
@@ -312,8 +306,8 @@ class RestWatch(Part):
         self._next[0] = clock + self._window
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Find the particles that are at rest, and stop them. Returns True if events must be predicted again,
-        and False if all particles rest.
+        """Find particles at rest, and stop them; True if events must be predicted again, False if
+        all rest.
         """
         from gaspart.kernels.event.jams import MOVES, RESTS, find_resting, stop_all
 
@@ -346,9 +340,7 @@ class RestWatch(Part):
 
 
 def rest_watch(scene: Scene, state: State) -> RestWatch | None:
-    """Return the test for a scene in which all particles may come to rest, or None. Such a scene has lasting
-    contacts and gravity without a flow, and no face or wall of it adds energy.
-    """
+    """Return the test for a scene whose particles may all rest (nothing adds energy), or None."""
     falls = scene.gravity is not None and not scene.driven_axes
     still = not (scene.faces or scene.face_temperatures)
     return RestWatch(scene, state) if scene.contact_duration > 0.0 and falls and still else None

@@ -63,18 +63,11 @@ class Part:
         """Set the present time, on the clocks of the epoch, at the start of a run."""
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Set the data that depend on the epoch, and return the kernel model with these data.
-
-        length : length of the epoch
-        start : time at which it starts
-        """
+        """Set data that depend on the epoch, of this length and start; return the kernel model with them."""
         return model
 
     def close_epoch(self, length: float) -> None:
-        """Add the contribution of flights in an epoch before the particles move to its end.
-
-        length : length of the epoch
-        """
+        """Add the contribution of flights in an epoch of this length before particles move to its end."""
 
     def end_epoch(self, length: float, start: float) -> None:
         """Shift the times of the part to a new origin of the clocks. At the end of an epoch with this
@@ -85,11 +78,7 @@ class Part:
             times -= length
 
     def apply_event(self, particles: Particles, model: Model, tally: Tally, start: float) -> bool:
-        """Perform the event scheduled for the time `next`. Returns True if all events must be predicted
-        again.
-
-        start : start of the epoch
-        """
+        """Perform the event due at `next`; return True if all events must be predicted again."""
         raise NotImplementedError
 
     def reset(self, clock: float) -> None:
@@ -98,17 +87,11 @@ class Part:
             sums[...] = 0
 
     def counts(self, clock: float) -> dict[str, Any]:
-        """Return the counters since the last `reset`, by their names in `state.tally.Tally`.
-
-        clock : present time on the clocks of the epoch
-        """
+        """Return the counters since the last `reset`, by their names in `Tally`, at `clock` of the epoch."""
         return {}
 
     def write(self, state: State, clock: float) -> None:
-        """Write the properties of particles and scene that belong to this feature into a state.
-
-        clock : present time on the clocks of the epoch
-        """
+        """Write the properties of this feature, at `clock` of the epoch, into a state."""
 
 
 class TallyPart(Part):
@@ -129,10 +112,7 @@ class TallyPart(Part):
         self.name, self.kernel = name, kernel
 
     def read(self, clock: float) -> np.ndarray:
-        """Return all sums since the last `reset` in one array.
-
-        clock : present time on the clocks of the epoch
-        """
+        """Return all sums since the last `reset`, at `clock` of the epoch, in one array."""
         raise NotImplementedError
 
 
@@ -210,9 +190,7 @@ class ShearPart(Part):
         self.gained = shear.velocity**2
 
     def begin_epoch(self, length: float, start: float, model: Model) -> Model:
-        """Continue the displacement at time 0 of the clocks. The displacement is computed as the remainder of
-        a division, which is exact, so that it does not drift.
-        """
+        """Continue the displacement at time 0 of the clocks, by an exact remainder that does not drift."""
         shear = self._shear
         period = self._length / abs(shear.velocity) if shear.velocity else math.inf
         phase = math.fmod(start, period)
@@ -269,8 +247,7 @@ class Kicks(Part):
 
     def end_epoch(self, length: float, start: float) -> None:
         """Set the time of the next kick to a multiple of the interval. The multiple has a single rounding
-        error, while a sum of intervals would accumulate errors. The subtraction of the start of the epoch is
-        exact.
+        error, while a sum of intervals would accumulate errors.
         """
         self._next[0] = (int(self._number[0]) + 1) * self._interval - start
 
@@ -319,11 +296,7 @@ class StepKicks(Part):
         return math.floor(steps * self._per_step * (1.0 + 4e-16) + 1e-9)
 
     def until(self, steps: float, part: float) -> int:
-        """Return the number of parts of a step from now until the next kick. The kick is at the end of the
-        last of these parts.
-
-        part : length of a part, in steps
-        """
+        """Return the number of parts, of length `part` in steps, until the next kick at their end."""
         due = self._kicks_by(steps)
         number = max(1, math.floor(((due + 1) / self._per_step - steps) / part) - 1)
         while self._kicks_by(steps + number * part) <= due:
@@ -331,10 +304,7 @@ class StepKicks(Part):
         return number
 
     def due(self, steps: float, part: float) -> tuple[float, tuple[np.ndarray, int]] | None:
-        """Return the width and number of the kick that is due after these steps, or None.
-
-        part : length of the part that has just been completed
-        """
+        """Return width and number of the kick that is due after these steps and a part, or None."""
         due = self._kicks_by(steps)
         number = due - self._kicks_by(steps - part)
         if number <= 0:

@@ -71,9 +71,7 @@ class StressPart(TallyPart):
 
 
 class ShearedStressPart(StressPart):
-    """Stress tensor and heat flux of a sheared gas. Velocities relative to the flow change during a flight.
-    Therefore the contribution of each flight is computed from the time of its last event.
-    """
+    """Stress tensor and heat flux of a sheared gas, by flights since their last events."""
 
     def __init__(self, flights: np.ndarray, model: Model, unit_mass: float, drift: np.ndarray) -> None:
         super().__init__(flights, model, unit_mass, drift)
@@ -107,10 +105,7 @@ class ShearedStressPart(StressPart):
 def stress_part(
     tally: OptionalTally, flights: np.ndarray, model: Model, unit_mass: float, scene: Scene, state: State
 ) -> StressPart:
-    """Return the stress part for a gas with or without shear.
-
-    state : initial state
-    """
+    """Return the stress part for a gas with or without shear. `state`: initial state."""
     kind = StressPart if model.shear is None else ShearedStressPart
     return kind(flights, model, unit_mass, drift_of(scene, state))
 
@@ -119,9 +114,7 @@ def stress_part(
 
 
 def rows_of(scene: Scene) -> np.ndarray:
-    """Return the row (N,) of each particle in sums by species. The row is the index of the species. Single
-    particles come first among the particles, but have the last row.
-    """
+    """Return the row (N,) of each particle in sums by species; single particles have the last row."""
     counts = [len(scene.particles), *(kind.count for kind in scene.species)]
     return np.repeat([len(scene.species), *range(len(scene.species))], counts)
 
@@ -147,10 +140,7 @@ class ImpulsesPart(TallyPart):
         super().__init__("impulses", kernels.Impulses(sums, axis, per_length, row), {"impulses": sums})
 
     def _add_momenta(self, clock: float, sign: float, sums: np.ndarray) -> None:
-        """Add `sign` times the momenta of all particles at a time to the sums.
-
-        clock : time on the clocks of the epoch
-        """
+        """Add `sign` times the momenta of all particles at `clock` of the epoch to the sums."""
         flights, model = self._flights.copy(), self._model
         advance_all(flights, clock, model.space, model.gravity)
         kernels.add_momenta(flights, sign, model, self.kernel._replace(sums=sums))
@@ -247,8 +237,8 @@ PARTS = {"stress": stress_part, "impulses": impulses_part, "pair_impulses": pair
 
 
 def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Return inverse accessible areas (sizes, 2d) of faces, and each particle's index of size. The inverse is
-    0 for faces that no centre can reach. Fixed particles have the index 0.
+    """Return inverse accessible areas (sizes, 2d) of faces, 0 if unreachable, and particles' index
+    of size.
     """
     fixed = ~np.isfinite(state.masses)
     sizes, size = np.unique(state.radii[~fixed], return_inverse=True)
@@ -259,9 +249,7 @@ def inverse_areas(scene: Scene, state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[str, np.ndarray]:
-    """Return the fields of `Tally` from sums over faces, shapes (2d, d) and (2d,). Interior walls have the
-    value 0.
-    """
+    """Return the fields of `Tally` from sums over faces, (2d, d) and (2d,), with 0 for interior walls."""
     return {
         "momentum_per_area": np.pad(momentum, ((0, walls), (0, 0))),
         "heat_per_area": np.pad(heat, (0, walls)),
@@ -269,9 +257,7 @@ def per_area_fields(momentum: np.ndarray, heat: np.ndarray, walls: int) -> dict[
 
 
 class EventPerAreaPart(TallyPart):
-    """Momentum and heat per accessible area, for the event-driven engine. Masses are in units of
-    `unit_mass`.
-    """
+    """Momentum and heat per accessible area, in units with `unit_mass`, for the event-driven engine."""
 
     kernel: PerArea
 

@@ -31,10 +31,7 @@ if TYPE_CHECKING:
 
 
 def empty_particles(engine: StepSettings, scene: Scene, state: State, ordinary: int) -> StepParticles:
-    """Return empty arrays for the particles, with masses but without a neighbour list.
-
-    ordinary : number of particles that are not oversized
-    """
+    """Return empty arrays for particles with masses, `ordinary` ones not oversized, without a list."""
     real = np.dtype(engine.precision).type
     _, masses = masses_of(scene, state)
     shape = (state.dimension, state.count)
@@ -62,11 +59,7 @@ def masses_of(scene: Scene, state: State) -> tuple[float, np.ndarray]:
 def model_for(
     engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], radii: np.ndarray
 ) -> StepModel:
-    """Return the kernel model of a scene.
-
-    radii : radii of the particles that are not oversized
-    seed : seed of the random numbers of thermal walls
-    """
+    """Return the kernel model of a scene, for `radii` that are not oversized and a `seed` of walls."""
     real = np.dtype(engine.precision).type
     lengths, margin = scene.container.lengths, real(not scene.centres_to_walls)
     space = Space(tuple(real(length) for length in lengths), scene.container.periodic, margin)
@@ -91,12 +84,9 @@ def step_tally(
     areas: tuple[np.ndarray, np.ndarray] | None,
     fixed: bool,
 ) -> StepTally:
-    """Return a tally for a number of faces, with all counters at zero.
-
-    largest : see `largest_terms`
-    parts : parts for optional tallies
-    areas : result of `inverse_areas` if the areas differ between particle sizes, otherwise None
-    fixed : True if there are fixed particles
+    """Return a tally for a number of faces, with all counters at zero. `largest`: see `largest_terms`.
+    `parts`: parts for optional tallies. `areas`: result of `inverse_areas` if the areas differ between
+    particle sizes, otherwise None. `fixed`: True if there are fixed particles.
     """
     tally = StepTally(
         counts=np.zeros(layout.PASSED + 1, dtype=np.int64),
@@ -123,9 +113,8 @@ def rules_for(
     engine: StepSettings, scene: Scene, state: State, seed: int | tuple[int, ...], space: Space
 ) -> Rules | None:
     """Return the kernels' `Rules` for special faces or collision laws, or None. These faces and laws change
-    more than the momenta of particles, for example spins.
-
-    space : space in the form of the kernels of this engine
+    more than the momenta of particles, for example spins. `space`: space in the form of the kernels of this
+    engine.
     """
     if not needs_rules(scene):
         return None
@@ -212,8 +201,8 @@ class ImpulsesPart(TallyPart):
         self.reset(0.0)
 
     def _momenta(self) -> np.ndarray:
-        """Return the present momenta (rows, bins + 1) of all particles in the impulses' bins. Momenta are
-        summed in the order of particle numbers, so that rounding does not depend on the order in memory.
+        """Return the momenta (rows, bins + 1) in bins, summed by particle number so that rounding is
+        fixed.
         """
         particles = self._particles
         order = np.argsort(particles.index)
@@ -252,11 +241,7 @@ def tally_parts(
     threads: int,
     units: tuple[float, float],
 ) -> list[TallyPart]:
-    """Return the parts for optional tallies.
-
-    particles : arrays of the particles, in their slots at time 0
-    units : see `ImpulsesPart`
-    """
+    """Return the parts for optional tallies, from the particles in their slots and `ImpulsesPart`'s units."""
     return [PARTS[tally.name](tally, particles, model, scene, threads, units) for tally in tallies]
 
 
@@ -325,9 +310,7 @@ def _width(scene: Scene, count: int) -> float:
 
 
 def _skin(engine: StepSettings, scene: Scene, state: State, contact: float) -> float:
-    """Return the skin thickness with the lowest cost. With a thin skin, lists must be made often; with a
-    thick skin, they contain many pairs.
-    """
+    """Return the skin thickness with the lowest cost of making and searching lists."""
     dimension, density = scene.dimension, state.count / scene.container.volume
     squares = (state.velocities**2).sum(axis=1)
     fastest = np.sqrt(squares.max(initial=0.0))

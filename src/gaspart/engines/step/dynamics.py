@@ -139,10 +139,8 @@ class StepDynamics(SteppedDynamics):
         return common | {key: getattr(self._tally, key) for key in _BY_THREAD}
 
     def _per_area(self, most: float, sums: np.ndarray) -> np.ndarray:
-        """Return the momentum along each axis and the heat given to each face, per accessible area. The shape
-        is (2d, d + 1).
-
-        most : inverse of the smallest area
+        """Return momentum along each axis and heat per accessible area (2d, d + 1); `most`: inverse of the
+        least.
         """
         d = self._scene.dimension
         units = np.array(self._largest) * (self._unit_mass * most)
@@ -166,8 +164,8 @@ class StepDynamics(SteppedDynamics):
         return {**super()._checkpoint_data(), "reach": self._particles.bounds, **self._list_parts()}
 
     def _required_arrays(self, checkpoint: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the arrays required from a checkpoint, except the origin of the neighbour list. The origin
-        is not required because the checkpoint may be from another search.
+        """Return arrays required from a checkpoint, which may lack the list's origin if the search
+        differs.
         """
         spared = self._list_parts()
         return {key: array for key, array in self.checkpoint().items() if key not in spared}
@@ -180,9 +178,7 @@ class StepDynamics(SteppedDynamics):
             self._particles.bounds[...] = checkpoint["reach"]
 
     def _list_parts(self) -> dict[str, np.ndarray]:
-        """Return the origin (d, N) of the neighbour list by slot, and its settings. The origin consists of
-        the positions of the particles when the list was made.
-        """
+        """Return positions (d, N), by slot, at which the neighbour list was made, and its settings."""
         if self._search.cells is None:
             return {}
         settings = {key: np.array(getattr(self._search.cells, key)) for key in ("skin", "per_side")}

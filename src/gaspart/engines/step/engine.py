@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from gaspart.engines.engine import register
 from gaspart.engines.step.settings import StepSettings
+from gaspart.keys import documented
 
 if TYPE_CHECKING:
     from gaspart.engines.step.dynamics import StepDynamics
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from gaspart.state.state import State
 
 
+@documented
 @register
 @dataclass(frozen=True)
 class TimeStepped(StepSettings):
@@ -24,30 +26,9 @@ class TimeStepped(StepSettings):
     After the collision, the pair moves for the rest of the step. The result is bitwise identical for any
     `boxes_per_side`, `near_boxes`, `skin` and `threads`.
 
-    Parameters
-    ----------
-    time_step : float, [time]
-        Length of a step.
-    boxes_per_side : int or (d,) sequence of int, optional
-        Number of boxes along each axis. With boxes, pairs are searched in neighbouring boxes; with 1 box, all
-        pairs are tested. Default: a neighbour list instead of boxes.
-    precision : {"float64", "float32"}, default "float64"
-        Floating-point type of the state.
-    rewind : bool, default True
-        Move pairs back to their contact before they collide. If False, pairs collide at their positions after
-        the step, which shows the effect of rewinding.
-    passes : int, default 4
-        Maximum number of searches for overlaps per step. The step ends after the first search that finds no
-        overlap. With more than one search, overlapping pairs that touched within the step but already
-        separate are resolved, too. A single search is the original method [1]_.
-    skin : float, [length], optional
-        Distance beyond the contact distance up to which pairs are in the neighbour list. Default: the engine
-        chooses the distance.
-    near_boxes : bool, default False
-        Search only neighbouring boxes that are closer to the particle than the contact distance.
-    threads : int, default 1
-        Number of threads that share the work. Only a search with a neighbour list uses several threads, which
-        are faster only above about 5e4 particles (docs/performance.md).
+    docs/time-stepped.md describes the measured effect of each setting.
+
+    Literature: Frederickx and Meerts (2010).
 
     Raises
     ------
@@ -59,14 +40,6 @@ class TimeStepped(StepSettings):
     EventDriven : Exact collisions of hard particles.
     DSMC : Collision partners drawn at random.
 
-    Notes
-    -----
-    docs/time-stepped.md describes the measured effect of each setting.
-
-    References
-    ----------
-    .. [1] Frederickx and Meerts (2010).
-
     Examples
     --------
     >>> import gaspart as gp
@@ -75,52 +48,16 @@ class TimeStepped(StepSettings):
     """
 
     def bias(self, scene: Scene, kind: str) -> float:
-        """Bound the relative error of a quantity due to missed contacts and their order.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        kind : {"rates", "paths", "fluxes", "walls"}
-            Transfers to walls, which are "walls" and "fluxes", have an additional error.
-
-        Returns
-        -------
-        float, [1]
-            The bound; see docs/time-stepped.md for its parts.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> box = gp.Container((40.0, 40.0, 40.0), boundary="periodic")
-        >>> scene = gp.Scene(box, [gp.Species(2000, 0.5, temperature=1.0)])
-        >>> round(gp.TimeStepped(time_step=0.1).bias(scene, "rates"), 4)
-        0.0133
+        """Bound the relative error of a quantity due to missed contacts and their order, and for "walls" and
+        "fluxes" also of transfers to walls (docs/time-stepped.md).
         """
         from gaspart.engines.step.limits import bias
 
         return bias(self, scene, kind)
 
     def predictions(self, scene: Scene) -> dict[str, float]:
-        """Return bounds on relative errors that are known before a run.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-
-        Returns
-        -------
-        dict of str to float
-            ``error``: of rates. With walls also ``error_of_wall_pressures`` and
-            ``error_of_the_density_at_walls``.
-
-        Examples
-        --------
-        >>> import gaspart as gp
-        >>> scene = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(20, 0.2, temperature=1.0)])
-        >>> {key: round(error, 4) for key, error in gp.TimeStepped(time_step=0.02).predictions(scene).items()}
-        {'error': 0.0013, 'error_of_wall_pressures': 0.0015, 'error_of_the_density_at_walls': 0.0044}
+        """Return bounds on relative errors that are known before a run: `error` of rates, and with walls
+        `error_of_wall_pressures` and `error_of_the_density_at_walls`.
         """
         from gaspart.engines.step.limits import wall_density_error
 

@@ -70,9 +70,7 @@ a slit of 1.5 diameters: 0.49).
 
 
 def oversized_particles(state: State) -> np.ndarray:
-    """Return a mask (N,) of the particles that are too large for boxes and cells. There are only a few such
-    particles, and they are much larger than all other particles.
-    """
+    """Return a mask (N,) of the few particles that are much larger than all others."""
     order = np.argsort(state.radii, kind="stable")
     sizes = state.radii[order]
     oversized = np.zeros(state.count, dtype=bool)
@@ -216,9 +214,7 @@ def _missed_fraction(time_step: float, several: bool, dimension: int, gas: Kinds
 
 
 def check_step(engine: StepSettings, state: State) -> None:
-    """Raise SceneError if the step causes large errors; warn of errors of a few percent. The message
-    recommends a sufficiently short step.
-    """
+    """Raise SceneError if the step causes large errors, with a better one; warn of a few percent."""
     if state.count < 2:
         return
     several = engine.passes > 1
@@ -262,9 +258,7 @@ def _packing_fraction(dimension: int, gas: Kinds, volume: float) -> float:
 
 
 def _contacts(time_step: float, dimension: int, gas: Kinds, volume: float) -> float:
-    """Return the mean number of collisions of a particle in a step. The number is the step times the
-    collision rate of particles of one size at the same packing fraction, see `_contact_value`.
-    """
+    """Return the mean collisions of a particle in a step, as for one size at the same packing fraction."""
     count = gas.number.sum()
     if count < 2.0:
         return 0.0

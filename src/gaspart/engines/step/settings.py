@@ -20,7 +20,7 @@ PRECISIONS = ("float64", "float32")
 class StepSettings(Engine):
     """Settings of `TimeStepped`, which describes them."""
 
-    time_step: float = field(metadata=declare(positive("duration of a step")))
+    time_step: float = field(metadata=declare(positive("duration of a step [time]")))
     boxes_per_side: int | tuple[int, ...] | None = field(
         default=None,
         metadata=declare(per_side("number of boxes, or one for each axis; by default a neighbour list")),
@@ -30,19 +30,43 @@ class StepSettings(Engine):
     )
     rewind: bool = field(
         default=True,
-        metadata=declare(flag("overlapping particles are moved back to the time of their contact")),
+        metadata=declare(
+            flag(
+                "overlapping pairs are moved back to their contact before they collide; without it "
+                "the effect of rewinding shows"
+            )
+        ),
     )
-    passes: int = field(default=4, metadata=declare(count("how often a step searches for overlaps, at most")))
+    passes: int = field(
+        default=4,
+        metadata=declare(
+            count(
+                "most searches for overlaps in a step, which ends after the first that finds none; 1 "
+                "is the original method"
+            )
+        ),
+    )
     skin: float | None = field(
         default=None,
         metadata=declare(
-            positive("distance by which a neighbour list reaches farther than a contact; by default chosen")
+            positive(
+                "distance by which a neighbour list reaches farther than a contact [length]; by "
+                "default chosen"
+            )
         ),
     )
     near_boxes: bool = field(
         default=False, metadata=declare(flag("with boxes: search only the boxes within reach of a contact"))
     )
-    threads: int = field(default=1, metadata=declare(count("number of threads that share a run's work")))
+    threads: int = field(
+        default=1,
+        metadata=declare(
+            count(
+                "number of threads that share the work; only a search with a neighbour list uses "
+                "several, faster above 5e4 particles"
+            )
+        ),
+    )
 
     name: ClassVar[str] = "step"
     title: ClassVar[str] = "time-stepped"

@@ -22,8 +22,8 @@ _REMEDY = "set GASPART_CACHE to a writable folder"
 
 
 def cache_directory() -> Path:
-    """Return $GASPART_CACHE, or the folder gaspart in $XDG_CACHE_HOME or ~/.cache. Raises RuntimeError if
-    neither variable is set and the user has no home folder.
+    """Return $GASPART_CACHE, or gaspart in $XDG_CACHE_HOME or ~/.cache; RuntimeError without a home
+    folder.
     """
     chosen = os.environ.get("GASPART_CACHE")
     if chosen:
@@ -61,9 +61,7 @@ def report_unwritable(directory: Path, error: OSError) -> None:
 
 
 def obstacle(directory: Path) -> str:
-    """Return the reason why a folder cannot store kernels, or "" if it can. The folder is created if it is
-    missing.
-    """
+    """Return the reason why a folder, made if missing, cannot store kernels, or "" if it can."""
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
         directory.mkdir(mode=0o700, exist_ok=True)
@@ -76,8 +74,8 @@ def obstacle(directory: Path) -> str:
 
 
 def _is_private(status: os.stat_result) -> bool:
-    """Return True if a path is a folder that only this user can write to. This test ensures that no other
-    user can place machine code in the folder.
+    """Return True if only this user can write to a folder, so that nobody else can place machine
+    code in it.
     """
     return stat.S_ISDIR(status.st_mode) and is_private(status)
 
@@ -104,11 +102,10 @@ _LOOKED_FOR = {"coverage", "scipy.linalg.cython_blas"}
 
 def load_numba(ours: bool = False) -> ModuleType:
     """Import numba and all modules that it would load with the first kernel. This creates half a million
-    objects that stay in memory, so the garbage collector is switched off during the import.
-
-    ours : True if the process belongs to gaspart and to no other program. Then the collector ignores these
-        objects also later and at the end of the process, and optional imports of numba that kernels of
-        gaspart do not use are hidden from it.
+    objects that stay in memory, so the garbage collector is switched off during the import. `ours`: True if
+    the process belongs to gaspart and to no other program. Then the collector ignores these objects also
+    later and at the end of the process, and optional imports of numba that kernels of gaspart do not use are
+    hidden from it.
     """
     if "numba.np.arraymath" in sys.modules:
         return import_module("numba")
@@ -159,9 +156,7 @@ def shipped_key(key: tuple) -> tuple | None:
 
 
 def shipped_content(path: str) -> bytes | None:
-    """Return the content of a shipped file, by its path in the folder of shipped kernels. Returns None if the
-    file is not in the list, is missing, or differs from its hash in the list.
-    """
+    """Return a shipped file's content; None if it is not in the list, missing, or different from its hash."""
     expected = _digests().get(path)
     if expected is None:
         return None
@@ -174,9 +169,7 @@ def shipped_content(path: str) -> bytes | None:
 
 @cache
 def _digests() -> dict[str, str]:
-    """Return the sha256 of each shipped file by its path. In a copy of the repository the result is empty,
-    because it contains no compiled kernels.
-    """
+    """Return the sha256 of each shipped file by its path; empty in a copy of the repository."""
     try:
         listed = json.loads((FOLDER / LIST).read_bytes())
     except (OSError, ValueError, RecursionError):

@@ -44,9 +44,7 @@ def _code(content: bytes | None) -> bytes | None:
 
 
 def _own_content(path: str) -> bytes | None:
-    """Read a file that this user has written; return None without one. A file written by another user is
-    rejected, because its code would run with the rights of this user.
-    """
+    """Read a file of this user; None for any other, because its code would run with this user's rights."""
     try:
         with open(path, "rb") as file:
             return file.read() if is_own(os.fstat(file.fileno())) else None
@@ -102,8 +100,8 @@ class KernelFiles(caching.IndexDataCacheFile):
             scratch.replace(path)
 
     def load(self, key: tuple) -> Any:
-        """Return the compiled code for `key`, or None if no complete file exists. A file of this user is
-        preferred to a file of the package.
+        """Return the compiled code for `key`, of this user rather than of the package; None without a
+        complete file.
         """
         code = _code(_own_content(self._data_path(self._name(key))))
         if code is None:
@@ -111,9 +109,7 @@ class KernelFiles(caching.IndexDataCacheFile):
         return None if code is None else pickle.loads(code)
 
     def _read_shipped(self, key: tuple) -> bytes | None:
-        """Return the content of the file that was shipped with the package. The folders have the same names
-        as the folders of the cache.
-        """
+        """Return the content of the file that was shipped with the package, in folders of the same names."""
         for_many = shipped_key(key)
         if for_many is None:
             return None
@@ -121,8 +117,8 @@ class KernelFiles(caching.IndexDataCacheFile):
         return shipped_content(f"{folder.parent.name}/{folder.name}/{self._name(for_many)}")
 
     def _name(self, key: tuple) -> str:
-        """Return the name of the file for a key. The key contains the types of the arguments, the processor,
-        and hashes of the bytecode. The stamp contains the options.
+        """Return the name of the file for a key: types of arguments, processor, bytecode; options are in the
+        stamp.
         """
         compiled = repr((self._version, self._source_stamp, key))
         digest = hashlib.sha256(compiled.encode()).hexdigest()
@@ -142,9 +138,7 @@ class KernelContents(caching.CompileResultCacheImpl):
 
 
 class KernelCache(caching.FunctionCache):
-    """Cache of a function compiled with given options; it replaces numba's own cache. The constructor may
-    raise OSError.
-    """
+    """Cache of a function with given options, instead of numba's own; the constructor may raise OSError."""
 
     contents: ClassVar = KernelContents
 

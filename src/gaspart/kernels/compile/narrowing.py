@@ -104,8 +104,8 @@ class _OneArgument(numba.extending.models.TupleModel):
 
 
 def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
-    """Return the entries of each argument that a function uses, for given argument types. The type is
-    `_UNKNOWN` if it cannot be determined.
+    """Return the entries of each argument that a function uses, for given types; `_UNKNOWN` if
+    undetermined.
     """
     key = _key(function, arguments)
     if key not in _known_uses:
@@ -114,9 +114,7 @@ def _uses(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 
 def _key(function: Callable, arguments: tuple) -> tuple:
-    """Return a key of a function and its argument types: code and numbers of types. Hashing the types
-    themselves is slow.
-    """
+    """Return a key of a function and its argument types; hashing the types themselves is slow."""
     numbers = (kind._code if isinstance(kind, _MATTER) else _UNKNOWN for kind in arguments)
     return function.__code__, tuple(numbers)
 
@@ -138,9 +136,7 @@ def _read(function: Callable, arguments: tuple) -> tuple[Use, ...]:
 
 @cache
 def _definition(code: Any) -> tuple[ast.FunctionDef | None, set[str]]:
-    """Return the source of a function in a module, and the arguments that it assigns. Return None for any
-    other function, which has no source.
-    """
+    """Return the source of a module's function and the arguments that it assigns; None for any other."""
     try:
         definition = _functions(code.co_filename).get(code.co_firstlineno)
     except OSError:
@@ -164,9 +160,7 @@ def _functions(file: str) -> dict[int, ast.FunctionDef]:
 
 
 def _is_plain(arguments: ast.arguments) -> bool:
-    """Return True if all arguments are positional and have no default. The arguments that numba passes here
-    have this form.
-    """
+    """Return True if all arguments are positional and have no default, as those that numba passes here."""
     others = arguments.posonlyargs, arguments.kwonlyargs, arguments.defaults
     return not any(others) and arguments.vararg is None and arguments.kwarg is None
 
@@ -258,9 +252,7 @@ class _Reader(ast.NodeVisitor):
         _merge(at, use)
 
     def _path(self, node: ast.expr) -> list[str] | None:
-        """Return the name of an argument and the entries that an expression selects. Returns None for any
-        other expression.
-        """
+        """Return the argument and the entries that an expression selects; None for any other expression."""
         match node:
             case ast.Name(name) if name in self.uses:
                 return [name]

@@ -39,10 +39,7 @@ _CACHE = usable_cache("kernels" if _tested else source_digest())
 
 
 def _compile(function: F, part: bool = False, **options: Any) -> F:
-    """Compile a function with the options of the policy.
-
-    part : True if only kernels call the function.
-    """
+    """Compile a function with the options of the policy. `part`: True if only kernels call the function."""
     if part:
         options |= _UNWRAPPED
     if _tested:

@@ -31,9 +31,7 @@ _DIGEST = re.compile(r"[0-9a-f]{32}")
 
 
 def file_digests(paths: Iterable[Path]) -> list[str]:
-    """Return the hash of each file. The hash of a Python file is computed from its syntax tree, the hash of
-    any other file from its bytes.
-    """
+    """Return the hash of each file: of its syntax tree for Python, of its bytes for any other."""
     stored, added, digests = _read_stored(), {}, []
     for path in paths:
         content = path.read_bytes()
@@ -51,9 +49,7 @@ def file_digests(paths: Iterable[Path]) -> list[str]:
 
 @cache
 def source_digest() -> str:
-    """Return a short hash of all modules of `kernels`, which contain all compiled code. These modules contain
-    no other code. Docstrings and comments do not change the hash.
-    """
+    """Return a short hash of all modules of `kernels`; docstrings and comments do not change it."""
     return hashlib.sha256("".join(closure_digests().values()).encode()).hexdigest()[:16]
 
 
@@ -96,9 +92,7 @@ def tree_digest(source: bytes) -> str:
 
 
 def _words(node: Any) -> Iterator[str]:
-    """Yield the text of a syntax tree without its empty fields. Other versions of Python may have additional
-    empty fields.
-    """
+    """Yield a syntax tree's text without empty fields, which depend on the version of Python."""
     if isinstance(node, ast.AST):
         yield f"({type(node).__name__}"
         for name, value in ast.iter_fields(node):
@@ -117,9 +111,7 @@ def _words(node: Any) -> Iterator[str]:
 
 
 def _is_text(node: Any) -> bool:
-    """Return True if a statement is only a string, such as a docstring. The docstring of a constant is also
-    such a statement.
-    """
+    """Return True if a statement is only a string, such as a docstring, also of a constant."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Constant):
         return False
     return isinstance(node.value.value, str)
@@ -131,9 +123,7 @@ def _digest(content: bytes) -> str:
 
 @cache
 def _read_stored() -> dict[str, str]:
-    """Return the stored hashes of trees by the hashes of the file contents. They come from the cache folder.
-    Hashes computed by this process are added.
-    """
+    """Return the stored hashes of trees by the hashes of the file contents."""
     try:
         with open(_folder() / STORE, "rb") as file:
             content = json.load(file) if is_own(os.fstat(file.fileno())) else None
@@ -146,9 +136,7 @@ def _read_stored() -> dict[str, str]:
 
 
 def _store(added: dict[str, str]) -> None:
-    """Add hashes to the stored hashes in the cache folder, if it can be written. Otherwise `usable_cache`
-    issues a warning.
-    """
+    """Add hashes to the stored hashes in the cache folder, if it can be written."""
     try:
         folder = _folder()
         _read_stored.cache_clear()
@@ -161,8 +149,8 @@ def _store(added: dict[str, str]) -> None:
 
 
 def _folder() -> Path:
-    """Return the folder of the stored hashes. Raises RuntimeError if other users may write to it, or if it
-    cannot be written.
+    """Return the folder of the stored hashes; RuntimeError if others may, or this user cannot, write
+    to it.
     """
     folder = cache_directory() / "sources"
     if obstacle(folder):

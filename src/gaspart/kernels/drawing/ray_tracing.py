@@ -113,10 +113,8 @@ def sky(p, n, spheres, grid):
     hides c / h^2 of the light of a uniform sky if it is completely above the horizon (exact). Its centre is
     at the distance h r, and c is the cosine of its angle to the normal. As the sphere sets, this fraction
     goes to 0. Only spheres closer than the side of a cell count, and their effect fades with distance. Each
-    sphere counts once, in the first of the 27 cells that contains it.
-
-    p : point on a surface
-    n : normal of the surface
+    sphere counts once, in the first of the 27 cells that contains it. `p`: point on a surface. `n`: normal of
+    the surface.
     """
     low, side, numbers, first, listed, lowest = grid
     free = 1.0
@@ -147,9 +145,7 @@ def sky(p, n, spheres, grid):
 
 @inner_kernel
 def _edge(o, d, edges, thickness):
-    """Return the distance of the nearest edge of the container that a ray touches. A ray touches an edge if
-    it passes within `thickness` times this distance.
-    """
+    """Return the distance of the nearest edge of the container within `thickness` times it of a ray."""
     best = math.inf
     for m in range(len(edges)):
         e = edges[m]
@@ -229,9 +225,8 @@ def _shade(ray, t, code, view, scales, scene, grid, light_around):
 
 @inner_helper
 def _direction(column, row, image, view, scales):
-    """Return the direction of the ray through a point of the picture.
-
-    column, row : coordinates in pixels from the upper left corner
+    """Return the direction of the ray through a point of the picture. `column` and `row`: coordinates in
+    pixels from the upper left corner.
     """
     across = (2.0 * column / image.shape[1] - 1.0) * scales[0]
     along = (1.0 - 2.0 * row / image.shape[0]) * scales[1]

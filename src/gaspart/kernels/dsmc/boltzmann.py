@@ -51,9 +51,7 @@ class Sums(NamedTuple):
 
 @inner_helper
 def unit_vector(key, step, cell, trial):
-    """Draw an isotropic unit vector (3,) (Marsaglia, Ann. Math. Stat. 43, 645 (1972)). The random words are
-    blocks 1, 2, ... of the trial.
-    """
+    """Draw an isotropic unit vector (3,) from blocks 1, 2, ... of the trial (Marsaglia 1972)."""
     block = 0
     while True:
         block += 1
@@ -89,11 +87,8 @@ def impact_parameter(key, step, cell, trial):
 
 @inner_helper
 def contact_vector(g, speed, dimension, counter):
-    """Draw the unit vector (3,) from the first to the second particle of a collision.
-
-    g : (3,), relative velocity, second minus first
-    speed : magnitude of g
-    counter : key, step, cell and trial
+    """Draw the unit vector (3,) from the first to the second particle of a collision. `g`: (3,), relative
+    velocity, second minus first. `speed`: magnitude of g. `counter`: key, step, cell and trial.
     """
     key, step, cell, trial = counter
     x, y, z = g[0] / speed, g[1] / speed, g[2] / speed
@@ -112,8 +107,7 @@ def contact_vector(g, speed, dimension, counter):
 @inner_helper
 def collide_smooth(particles, pair, normal, masses):
     """Apply an elastic collision to the smooth particles in two slots; return the transferred momentum.
-
-    normal : (3,), unit vector from the first particle to the second
+    `normal`: (3,), unit vector from the first particle to the second.
     """
     i, j = pair
     total, approach = masses[0] + masses[1], 0.0
@@ -140,11 +134,8 @@ def law_of(context, law):
 
 @inner_helper
 def load_spin(i, row, which, context, law):
-    """Write mass and spin of a particle to a row of a thread's workspace.
-
-    i : number of the particle
-    row : row of the workspace
-    which : kind of the particle
+    """Write mass and spin of a particle to a row of a thread's workspace. `i`: number of the particle. `row`:
+    row of the workspace. `which`: kind of the particle.
     """
     workspace, part = context.workspace, context.part
     workspace.inverse_mass[part, row] = 1.0 / workspace.mass[which]
@@ -162,10 +153,8 @@ def store_spin(i, row, context, law):
 
 @inner_helper
 def load_particle(particles, slot, row, which, context, law):
-    """Write the particle in a slot to a row of a thread's workspace.
-
-    row : row of the workspace
-    which : kind of the particle
+    """Write the particle in a slot to a row of a thread's workspace. `row`: row of the workspace. `which`:
+    kind of the particle.
     """
     flights = context.workspace.flights[context.part]
     for k in range(len(particles.images)):
@@ -194,9 +183,7 @@ def count_loss(context):
 
 @inner_helper
 def collide_loaded_pair(normal, context, law):
-    """Apply the collision law to the particles in a thread's workspace. Returns the momentum transferred
-    along the normal.
-    """
+    """Apply the collision law to the pair in a thread's workspace; return the normal momentum."""
     flights = context.workspace.flights[context.part]
     rr = rv = 0.0
     for k in range(len(context.space.lengths)):
@@ -302,9 +289,8 @@ def note_pair(particles, pair, context, stress, law):
 
 @inner_helper
 def add_contact(particles, pair, apart, context, stress, law):
-    """Add the transfer between the particles in two slots since `note_pair`.
-
-    apart : (3,), vector from the second particle to the first
+    """Add the transfer between the particles in two slots since `note_pair`. `apart`: (3,), vector from the
+    second particle to the first.
     """
     before, cell = stress.before[context.part], stress.cell[context.part]
     d, workspace = len(context.space.lengths), context.workspace
@@ -336,9 +322,7 @@ def widen_range(x, y, low, high):
 
 @inner_helper
 def bounds_of(u, v, w, first, end):
-    """Return the ranges of three arrays, computed in one loop. Each comparison waits for the previous one, so
-    a loop over three arrays takes no longer than a loop over one array.
-    """
+    """Return the ranges of three arrays in one loop, which takes as long as a loop over one of them."""
     low_u = high_u = u[first]
     low_v = high_v = v[first]
     low_w = high_w = w[first]
@@ -379,7 +363,7 @@ def section_of(particles, pair, cell, grid, context):
 
 @inner_helper
 def scatter_equal(particles, pair, g, square, counter):
-    """Apply an elastic collision to spheres of equal mass. Their relative velocity g (3,) becomes
+    """Apply an elastic collision to spheres of equal mass: their relative velocity g (3,) becomes
     isotropic.
     """
     i, j = pair
@@ -394,10 +378,8 @@ def scatter_equal(particles, pair, g, square, counter):
 
 @inner_helper
 def collide_pair(particles, pair, g, square, counter, context, law):
-    """Apply a collision to the particles in two slots.
-
-    g : (3,), relative velocity, second minus first
-    counter : key, step, cell and trial of the random numbers
+    """Apply a collision to the particles in two slots. `g`: (3,), relative velocity, second minus first.
+    `counter`: key, step, cell and trial of the random numbers.
     """
     d, kinds = len(context.space.lengths), context.workspace
     if law is None:

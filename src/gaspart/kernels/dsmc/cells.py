@@ -92,9 +92,7 @@ def gather(values, order, permuted):
 
 @inner_helper
 def gather_row(particles, row, first, end, grid):
-    """Write a row of positions or velocities in the new order to the spare row. Only the new slots from
-    `first` to `end` are written.
-    """
+    """Write a row of positions or velocities in the new order, slots `first` to `end`, to the spare row."""
     rows = particles.rows
     spare = particles.data[rows[len(rows) - 2]]
     gather(particles.data[rows[row]], grid.order[first:end], spare[first:end])
@@ -119,9 +117,8 @@ def swap_row(particles, row):
 
 @inner_kernel
 def share_cells(grid, shares):
-    """Divide the cells among threads so that each has about the same number of particles.
-
-    shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
+    """Divide the cells among threads so that each has about the same number of particles. `shares`: (threads
+    + 1,), cells shares[n] to shares[n + 1] belong to thread n.
     """
     parts, cells = len(shares) - 1, len(grid.starts) - 1
     total = np.int64(grid.starts[cells])
@@ -145,9 +142,7 @@ LEAST_PART = 1.0 / 16.0
 @inner_helper
 def accessible_part(cell, radius, periodic, grid, workspace):
     """Return the part of a cell that the centres of particles of a radius can reach, at least `LEAST_PART`.
-    The cells cover what the smallest particles can reach.
-
-    periodic : (d,), True for periodic axes
+    The cells cover what the smallest particles can reach. `periodic`: (d,), True for periodic axes.
     """
     part, gap = 1.0, (radius - workspace.radius[0]) * workspace.margin
     for k in range(len(periodic)):

@@ -233,10 +233,8 @@ def note_speed(particles, slot, cell, slab, grid, dense):
 
 @inner_helper
 def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
-    """Apply a collision along a direction to two particles, and count |r . dp|.
-
-    pair : slots of the particles
-    kinds : kinds of the particles
+    """Apply a collision along a direction to two particles, and count |r . dp|. `pair`: slots of the
+    particles. `kinds`: kinds of the particles.
     """
     workspace = context.workspace
     if stress is not None:
@@ -259,9 +257,7 @@ def collide_at(particles, pair, kinds, direction, sigma, context, law, stress):
 
 @inner_helper
 def approach_along(particles, pair, direction):
-    """Return the speed at which two particles approach along a direction. The direction points from the first
-    particle to the second.
-    """
+    """Return the speed at which two particles approach along a direction from the first to the second."""
     approach = 0.0
     for k in range(len(particles.images)):
         row = velocity_row(particles, k)
@@ -283,9 +279,7 @@ def partner_of(particles, slot, sigma, direction, pick, grid, context, dense):
 
 @inner_helper
 def relative_chance(pair, cells, kinds, largest, dense, workspace, dimension):
-    """Return the size and density factor of the collision probability, divided by its maximum. The particles
-    are in two cells; `kinds` are their kinds.
-    """
+    """Return the size and density factor of the collision probability, divided by its maximum."""
     first, second = workspace.radius[kinds[0]], workspace.radius[kinds[1]]
     size = (first + second) / (2.0 * workspace.largest)
     filled = 0.5 * (dense.fields[FILLED, cells[0]] + dense.fields[FILLED, cells[1]])
@@ -299,11 +293,8 @@ def weight_of_partner(particles, slot, partner, cell, grid, context, dense, leas
     """Return the collision probability relative to its maximum if sizes differ between walls, otherwise 1.
     The grid covers what the smallest particles can reach. The weight is 0 for a partner that cannot be where
     the contact direction puts it. It is larger in a cell of which the partners can reach only a part, because
-    this part contains all of them.
-
-    partner : radius of the partner, contact distance and contact direction
-    cell : cell of the partner
-    least_part : see `Dense`
+    this part contains all of them. `partner`: radius of the partner, contact distance and contact direction.
+    `cell`: cell of the partner. `least_part`: see `Dense`.
     """
     if least_part is None:
         return 1.0
@@ -325,10 +316,9 @@ def increase(rate, least_part):
 
 @inner_helper
 def try_once(particles, counter, words, bound, grid, context, dense, options):
-    """Perform one trial; return whether it is a collision, and whether its probability exceeded 1.
-
-    counter : key, step, cell and trial
-    options : the law, the sums of the stress, the slab, and `least_part`, see `Dense`
+    """Perform one trial; return whether it is a collision, and whether its probability exceeded 1. `counter`:
+    key, step, cell and trial. `options`: the law, the sums of the stress, the slab, and `least_part`, see
+    `Dense`.
     """
     key, step, cell, trial = counter
     law, stress, slab, least_part = options
@@ -364,11 +354,9 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
 
 @inner_helper
 def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
-    """Perform the collisions of one step in a cell.
-
-    rate : rate of trials divided by three factors: the number of particles in the cell, the largest number of
-        particles in a cell within reach, and the bound of the speed
-    options : the options of `try_once`
+    """Perform the collisions of one step in a cell. `rate`: rate of trials divided by three factors: the
+    number of particles in the cell, the largest number of particles in a cell within reach, and the bound of
+    the speed. `options`: the options of `try_once`.
     """
     workspace = context.workspace
     counts, key, step = workspace.counts[context.part], workspace.key, workspace.clock[0]

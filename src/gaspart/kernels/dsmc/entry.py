@@ -33,9 +33,8 @@ def first_free_slot(reservoirs):
 
 @inner_kernel
 def send_in(particles, slot, face, words, context, reservoirs):
-    """Write an entering particle to the workspace, and count its momentum and energy.
-
-    words : two random words, for its position
+    """Write an entering particle to the workspace, and count its momentum and energy. `words`: two random
+    words, for its position.
     """
     workspace, i, space = context.workspace, number_at(particles, slot), context.space
     flights, mass = workspace.flights[context.part], workspace.mass[0]
@@ -52,9 +51,7 @@ def send_in(particles, slot, face, words, context, reservoirs):
 
 @inner_kernel
 def count_entered(particles, slot, grid, present):
-    """Add an entered particle to the count of its cell. Before that, its slot was counted as an
-    empty slot.
-    """
+    """Add an entered particle to the count of its cell; its slot no longer counts as empty."""
     parts, absent = len(grid.counts), len(grid.starts) - 1
     locate(particles, slot, slot + 1, grid)
     leave_out_absent(particles, slot, slot + 1, grid, present)
@@ -67,10 +64,9 @@ def count_entered(particles, slot, grid, present):
 
 @inner_kernel
 def admit(particles, slot, grid, context, faces, reservoirs):
-    """Perform the entries of one step, after the motion of the other particles.
-
-    slot : first empty slot, which the first entering particle receives
-    reservoirs : the time of their next attempt is relative to the beginning of the step
+    """Perform the entries of one step, after the motion of the other particles. `slot`: first empty slot,
+    which the first entering particle receives. `reservoirs`: the time of their next attempt is relative to
+    the beginning of the step.
     """
     workspace, space, dt = context.workspace, context.space, context.workspace.dt
     flights = workspace.flights[context.part]

@@ -102,9 +102,7 @@ def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stre
 
 @inner_helper
 def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
-    """Perform the collisions of one step in one thread's slabs. These are every second slab, beginning with
-    slab `turn`.
-    """
+    """Perform the collisions of one step in one thread's slabs, every second one from slab `turn`."""
     slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
     for n in range(slabs[0], slabs[1]):
         collide_slab(particles, turn + 2 * n, grid, context, dense, law, stress)
@@ -188,11 +186,9 @@ def collide_all(particles, grid, context, threads, law, dense, stress):
 @allocating_kernel
 def run_steps(particles, grid, context, steps, threads, options):
     """Perform a number of steps, or fewer if the step length becomes unsuitable. Returns the number of steps
-    performed, at least one.
-
-    threads : number of threads, or None for one thread
-    options : gravity (d,), special faces, collision law, data of a dense gas, sums of the stress, step
-        lengths that suit the gas, and gases behind open faces; each may be None
+    performed, at least one. `threads`: number of threads, or None for one thread. `options`: gravity (d,),
+    special faces, collision law, data of a dense gas, sums of the stress, step lengths that suit the gas, and
+    gases behind open faces; each may be None.
     """
     gravity, faces, law, dense, stress, pace, reservoirs = options
     for n in range(steps):

@@ -181,10 +181,8 @@ _LOGS = np.array([_natural_log(x / 1.5) + _natural_log(1.2) + _natural_log(1.25)
 @inner_helper
 def words_of(key, step, cell, trial, block):
     """Return four random words of 32 bits, each in a word of 64 bits. The generator is Philox4x32-10 (Salmon,
-    Moraes, Dror & Shaw, SC11 (2011)).
-
-    key : (2,), words of 32 bits
-    step, cell, trial, block : counter; step below 2^53, cell and trial below 2^32, block below 2^8
+    Moraes, Dror & Shaw, SC11 (2011)). `key`: (2,), words of 32 bits. `step` and `cell` and `trial` and
+    `block`: counter; step below 2^53, cell and trial below 2^32, block below 2^8.
     """
     number = np.uint64(step)
     c0, c1, c2 = np.uint64(trial), np.uint64(cell), number & _LOW
@@ -316,9 +314,8 @@ def _energy(particles, slot, mass):
 
 @inner_helper
 def _kick(particles, slot, width, counter, mass, momentum):
-    """Kick one particle, and add its change of momentum to `momentum` (3,).
-
-    counter : key and number of the kick
+    """Kick one particle, and add its change of momentum to `momentum` (3,). `counter`: key and number of the
+    kick.
     """
     key, number = counter
     i = number_at(particles, slot)
@@ -336,11 +333,9 @@ def _kick(particles, slot, width, counter, mass, momentum):
 
 @kernel
 def kick_all(particles, workspace, width, counter, injected_energy):
-    """Kick all particles without changing the total momentum.
-
-    width : width of the distribution of kicks for mass 1
-    counter : see `_kick`
-    injected_energy : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    """Kick all particles without changing the total momentum. `width`: width of the distribution of kicks for
+    mass 1. `counter`: see `_kick`. `injected_energy`: (1, 2), energy given to the particles, see
+    `physics.running_sum.add`.
     """
     momentum, total = (0.0, 0.0, 0.0), 0.0
     for slot in range(particles.data.shape[1]):

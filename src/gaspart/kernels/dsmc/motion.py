@@ -50,9 +50,8 @@ def is_beyond(particles, slot, radius, space):
 
 @inner_kernel
 def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law):
-    """Repeat the step of a particle that has crossed a wall, now including the faces.
-
-    which : kind of the particle
+    """Repeat the step of a particle that has crossed a wall, now including the faces. `which`: kind of the
+    particle.
     """
     dt, flights = context.workspace.dt, context.workspace.flights[context.part]
     for k in range(len(context.space.lengths)):
@@ -73,9 +72,8 @@ def redo_flight_with_faces(particles, slot, which, context, gravity, faces, law)
 
 @inner_helper
 def bring_back_from_walls(particles, slots, context, gravity, faces, law):
-    """Repeat the step of the particles that have crossed a wall; return their number.
-
-    slots : first slot, and the end of the slots
+    """Repeat the step of the particles that have crossed a wall; return their number. `slots`: first slot,
+    and the end of the slots.
     """
     number = 0
     for slot in range(slots[0], slots[1]):
@@ -108,9 +106,8 @@ def advance_axis(particles, slots, axis, limits, dt, gravity):
 
 @inner_kernel
 def move(particles, slots, grid, context, gravity, faces, law):
-    """Perform the motion of one step for one thread's slots, and count them in cells.
-
-    slots : first slot, and the end of the slots
+    """Perform the motion of one step for one thread's slots, and count them in cells. `slots`: first slot,
+    and the end of the slots.
     """
     space, dt = context.space, context.workspace.dt
     inset = space.margin * context.workspace.largest

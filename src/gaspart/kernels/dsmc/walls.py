@@ -62,9 +62,8 @@ def along(axis, upper, flights, radius, space, gravity):
 @inner_helper
 def next_face(flights, radius, space, gravity, resting):
     """Return the next face that a particle reaches: (time from now, face, speed towards it). Without such a
-    face, the time is infinite and the face equals NONE.
-
-    resting : bits of the axes along which the particle rests
+    face, the time is infinite and the face equals NONE. `resting`: bits of the axes along which the particle
+    rests.
     """
     first, face, speed = inf, NONE, 0.0
     for k in range(len(space.lengths)):
@@ -107,12 +106,9 @@ def put_at_face(face, speed, flights, radius, space):
 
 @inner_kernel
 def draw_spin(i, level, inertia, key, counter, spins):
-    """Draw the spin of a particle; return the energy given to the face.
-
-    i : number of the particle
-    level : temperature
-    counter : number of components of the spin, number of the draw, and first block of random words for the
-        draw
+    """Draw the spin of a particle; return the energy given to the face. `i`: number of the particle. `level`:
+    temperature. `counter`: number of components of the spin, number of the draw, and first block of random
+    words for the draw.
     """
     components, number, block = counter
     width, energy = sqrt(level / inertia), 0.0
@@ -126,9 +122,8 @@ def draw_spin(i, level, inertia, key, counter, spins):
 
 @inner_helper
 def add_shear(face, mass, context, shear):
-    """Add the momentum of a particle along a face to the momentum given to the face.
-
-    mass : negative if the particle receives the momentum
+    """Add the momentum of a particle along a face to the momentum given to the face. `mass`: negative if the
+    particle receives the momentum.
     """
     if shear is not None:
         workspace, part = context.workspace, context.part
@@ -158,9 +153,8 @@ def press(face, which, impulse, context):
 
 @inner_helper
 def warm(face, which, heat, shear, context):
-    """Count the energy and the tangential momentum (3,) that a particle gives to a thermal face.
-
-    which : kind of the particle
+    """Count the energy and the tangential momentum (3,) that a particle gives to a thermal face. `which`:
+    kind of the particle.
     """
     workspace, part = context.workspace, context.part
     add_exact(workspace.wall_heat[part, face], heat)
@@ -174,9 +168,7 @@ def warm(face, which, heat, shear, context):
 
 @inner_helper
 def momentum_of(mass, flights):
-    """Return the momentum (3,) of the particle in a thread's workspace. The third component is 0 in two
-    dimensions.
-    """
+    """Return the momentum (3,) of the particle in a thread's workspace; in 2D the third component is 0."""
     velocity = flights[0].velocity
     return mass * velocity[0], mass * velocity[1], mass * velocity[2] if len(velocity) == 3 else 0.0
 
@@ -184,10 +176,8 @@ def momentum_of(mass, flights):
 @inner_kernel
 def leave_thermal(i, face, which, number, context, faces, law):
     """Give a particle at a thermal face the velocity with which it leaves. The velocity is random; see
-    `obstacles.thermal`.
-
-    i, which : number and kind of the particle
-    number : number of the draw for this particle
+    `obstacles.thermal`. `i` and `which`: number and kind of the particle. `number`: number of the draw for
+    this particle.
     """
     part, workspace, key = context.part, context.workspace, context.workspace.wall_key
     flights, mass, inertia = workspace.flights[part], workspace.mass[which], workspace.inertia[which]
@@ -225,9 +215,8 @@ def leave_thermal(i, face, which, number, context, faces, law):
 
 @inner_kernel
 def bounce(i, face, which, context, law):
-    """Reflect the particle in a thread's workspace at a hard face.
-
-    i, which : number and kind of the particle
+    """Reflect the particle in a thread's workspace at a hard face. `i` and `which`: number and kind of the
+    particle.
     """
     axis, side = face // 2, 1.0 if face % 2 else -1.0
     flights = context.workspace.flights[context.part]
@@ -248,9 +237,8 @@ def bounce(i, face, which, context, law):
 
 @inner_helper
 def bounce_often(face, times, speed, which, context):
-    """Count a number of elastic bounces of a smooth particle at a face, at one speed.
-
-    which : kind of the particle
+    """Count a number of elastic bounces of a smooth particle at a face, at one speed. `which`: kind of the
+    particle.
     """
     workspace = context.workspace
     workspace.wall_hits[context.part, face] += np.int64(times)
@@ -259,10 +247,8 @@ def bounce_often(face, times, speed, which, context):
 
 @inner_helper
 def lean(face, which, duration, context, gravity):
-    """Put a particle to rest at a face for some time; the face carries its weight.
-
-    duration : duration of the rest
-    which : kind of the particle
+    """Put a particle to rest at a face for some time; the face carries its weight. `duration`: duration of
+    the rest. `which`: kind of the particle.
     """
     axis = face // 2
     context.workspace.flights[context.part, 0].velocity[axis] = 0.0
@@ -341,9 +327,7 @@ def comes_to_rest(face, speed, remaining, which, context, gravity, law):
 
 @inner_kernel
 def leave_open(i, face, which, context, present):
-    """Remove a particle, and count the energy and momentum that it carries through the face. Its slot remains
-    at rest at the middle of the container.
-    """
+    """Remove a particle, and count the energy and momentum that it carries through the face."""
     if present is None:
         return
     workspace, part = context.workspace, context.part
@@ -359,10 +343,8 @@ def leave_open(i, face, which, context, present):
 
 @inner_kernel
 def fly_among_faces(i, which, remaining, context, gravity, faces, law):
-    """Move the particle in the workspace to the end of a step, with all its hits.
-
-    i, which : number and kind of the particle
-    remaining : time until the end of the step
+    """Move the particle in the workspace to the end of a step, with all its hits. `i` and `which`: number and
+    kind of the particle. `remaining`: time until the end of the step.
     """
     space, workspace, part = context.space, context.workspace, context.part
     flights, radius = workspace.flights[part], workspace.radius[which]

@@ -69,9 +69,7 @@ def box_of(predictions, boxes, i):
 
 @inner_helper
 def member(boxes, box, n, other):
-    """Return the n-th particle of a box; `other` is the preceding particle. The box must contain more than n
-    particles.
-    """
+    """Return the n-th particle of a box with more than n; `other` is the preceding particle."""
     if n < PLACES:
         return boxes.members[box, n]
     return boxes.head[box] if n == PLACES else boxes.following[other]
@@ -161,9 +159,8 @@ def number_of(candidate):
 
 @inner_helper
 def image_bits(image, first):
-    """Return the bits that represent an image, -1, 0 or 1, along an axis.
-
-    first : position of the first of these bits
+    """Return the bits that represent an image, -1, 0 or 1, along an axis. `first`: position of the first of
+    these bits.
     """
     return (uint64(image) & _IMAGE) << first
 
@@ -187,9 +184,8 @@ def offset_of(candidate, space):
 
 @inner_helper
 def opposite(image):
-    """Return the image bits of the first particle as seen from the second.
-
-    image : image bits of the second particle as seen from the first
+    """Return the image bits of the first particle as seen from the second. `image`: image bits of the second
+    particle as seen from the first.
     """
     return image ^ (image & _LOW) << _ONE
 
@@ -225,9 +221,8 @@ def test_candidates(particles, i, count, boxes, space, tally, gravity):
 @inner_kernel
 def list_others(particles, i, count, row, boxes, space, tally, gravity):
     """List the particles in the linked lists of a row of boxes. Returns the new number of candidates. If the
-    particles of another row might not fit, the candidates are tested, and the list is emptied.
-
-    row : first box of the row, its image, first step and end along the row
+    particles of another row might not fit, the candidates are tested, and the list is emptied. `row`: first
+    box of the row, its image, first step and end along the row.
     """
     first, image_yz, low, end = row
     x = uint64(particles.predictions[i].box[0])
@@ -274,10 +269,9 @@ def span(boxes, axis, at, crossed, dimension):
 
 @inner_helper
 def list_places(boxes, count, box, image, most):
-    """List the particles in the array of a box; return the new number of candidates.
-
-    count : number of candidates before
-    most : largest number of particles in a box so far; its updated value is also returned
+    """List the particles in the array of a box; return the new number of candidates. `count`: number of
+    candidates before. `most`: largest number of particles in a box so far; its updated value is also
+    returned.
     """
     list_box(boxes.candidates, count, boxes.members, box, image)
     filled = uint64(boxes.filled[box])
@@ -288,9 +282,8 @@ def list_places(boxes, count, box, image, most):
 def find_contact(particles, number, boxes, space, tally, crossed, gravity):
     """Search for an earlier contact of a particle in the boxes around its box. If the particle has just
     crossed into this box, only boxes that were not neighbours before are searched. All entries of the array
-    of a box are listed, even unused ones, which costs less than a test.
-
-    crossed : (3,), direction of the crossing along each axis
+    of a box are listed, even unused ones, which costs less than a test. `crossed`: (3,), direction of the
+    crossing along each axis.
     """
     i = uint64(number)
     at = particles.predictions[i].box

@@ -32,9 +32,7 @@ def next_attempt(reservoirs):
 
 @inner_helper
 def overlaps(flights, position, j, time, space):
-    """Return True if particle j overlaps a new particle at a position and `time`. Particle j need not have
-    been advanced to that time.
-    """
+    """Return True if particle j, advanced or not, overlaps a new particle at a position and `time`."""
     late, sigma, square = time - flights[j].clock, 2.0 * flights[j].radius, 0.0
     for k in range(len(space.lengths)):
         x = flights[j].position[k] + flights[j].velocity[k] * late
@@ -124,10 +122,8 @@ def predict_entered(particles, i, time, queue, boxes, model, tally):
 @inner_kernel
 def admit(particles, queue, boxes, model, tally, limits, reservoirs):
     """Process attempts to enter, up to the first successful one. Returns (number of attempts, time of the
-    last attempt, True if all particle numbers are in use).
-
-    limits : (3,), time of the next event of the particles inside, time at which to stop, and maximum number
-        of attempts
+    last attempt, True if all particle numbers are in use). `limits`: (3,), time of the next event of the
+    particles inside, time at which to stop, and maximum number of attempts.
     """
     soonest, stop, most = limits
     attempts, last, time, entered = 0, -inf, reservoirs.time[0], False

@@ -30,9 +30,8 @@ _PART = 2.0**-30  # minimum separation speed, as a fraction of the growth rate
 
 @inner_helper
 def time_of_contact(flights, i, j, offset, space, rate):
-    """Return the time at which two growing particles touch; inf if they do not.
-
-    offset : (d,), displacement of the second particle
+    """Return the time at which two growing particles touch; inf if they do not. `offset`: (d,), displacement
+    of the second particle.
     """
     start, rr, rv, vv, _, _, _ = encounter(flights, i, j, offset, space, None)
     sigma = flights[i].radius + flights[j].radius
@@ -41,9 +40,7 @@ def time_of_contact(flights, i, j, offset, space, rate):
 
 @inner_kernel
 def next_face(particles, i, boxes, space, rate):
-    """Return the next face that a particle reaches: (time, 2 axis + side). The face is a face of the
-    particle's box or of the container.
-    """
+    """Return the next face of its box or of the container that a particle reaches: (time, 2 axis + side)."""
     flight, at = particles.flights[i], particles.predictions[i].box
     growth = space.margin * flight.radius * rate
     radius = space.margin * flight.radius * (1.0 + rate * flight.clock)
@@ -71,10 +68,7 @@ def next_face(particles, i, boxes, space, rate):
 @inner_helper
 def box_near(boxes, at, n, space):
     """Return one of the 27 boxes around a box, and the displacement (3,) of its image. The box is -1 if it
-    does not exist.
-
-    at : (3,), coordinates of the central box
-    n : number of the neighbour
+    does not exist. `at`: (3,), coordinates of the central box. `n`: number of the neighbour.
     """
     a, b, c = n % 3, n // 3 % 3, n // 9
     x, y, z = boxes.neighbour[0, at[0], a], boxes.neighbour[1, at[1], b], boxes.neighbour[2, at[2], c]
@@ -88,10 +82,7 @@ def box_near(boxes, at, n, space):
 
 @inner_kernel
 def predict(particles, i, boxes, space, rate, number):
-    """Predict the next events of a particle.
-
-    number : number of the present event
-    """
+    """Predict the next events of a particle. `number`: number of the present event."""
     predictions = particles.predictions
     best = inf
     partner = NONE
@@ -138,9 +129,7 @@ def start(particles, queue, boxes, space, rate):
 
 @inner_kernel
 def meet_face(particles, i, face, time, boxes, space, rate):
-    """Move a particle into the next box, or reflect its growing surface at a wall. Returns True if its flight
-    has changed.
-    """
+    """Move a particle into the next box, or reflect it at a wall; return True if its flight has changed."""
     flights, predictions = particles.flights, particles.predictions
     axis, upper = face // 2, face % 2
     outermost = predictions[i].box[axis] == (boxes.per_side[axis] - 1 if upper else 0)
@@ -209,8 +198,8 @@ def run(particles, queue, boxes, space, tally, rate, stop, most):
 
 @kernel
 def closest(particles, boxes, space):
-    """Return the minimum of r^2/sigma^2 over all pairs in neighbouring boxes, at equal times. If there are no
-    such pairs, it is inf.
+    """Return the minimum of r^2/sigma^2 over pairs in neighbouring boxes, at equal times; inf
+    without pairs.
     """
     flights = particles.flights
     least = inf

@@ -53,9 +53,7 @@ def speed_before(flights, i, impulses):
 
 @inner_helper
 def speed_on_arrival(flights, i, time, model, gravity, impulses):
-    """Return the velocity along the axis at a later time; 0 without a tally. The particle need not have been
-    advanced to that time.
-    """
+    """Return the velocity along the axis at a later time, also of a particle behind it; 0 without a tally."""
     if impulses is not None:
         axis = impulses.axis
         if gravity is None:
@@ -289,9 +287,7 @@ def _reach(furthest, lists):
 
 @inner_helper
 def _span(x, reach, count, per_length):
-    """Return first and end of the cells along an axis within a distance of x. The numbers continue beyond the
-    container.
-    """
+    """Return first and end of the cells along an axis within a distance of x, also beyond the container."""
     low, end = int64(floor((x - reach) * per_length)), int64(floor((x + reach) * per_length)) + 1
     if end - low >= count:
         return int64(0), int64(count)
@@ -300,9 +296,7 @@ def _span(x, reach, count, per_length):
 
 @inner_helper
 def _gap_square(x, cell, span, count, per_length):
-    """Return the squared distance between x and a cell along an axis. It is 0 if all cells are
-    within reach.
-    """
+    """Return the squared distance between x and a cell along an axis; 0 if all cells are within reach."""
     if span[1] - span[0] >= count:
         return 0.0
     gap = max(cell - x * per_length, x * per_length - (cell + 1), 0.0) / per_length

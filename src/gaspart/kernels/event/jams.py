@@ -116,9 +116,8 @@ def gap_between(flights, positions, i, j, space):
 
 @kernel
 def join(flights, order, positions, axis, reach, space, parent):
-    """Join particles with gaps of at most `reach` into trees; `parent` (N,) are the parents.
-
-    order : (M,), these particles, sorted by their coordinate along a nonperiodic axis
+    """Join particles with gaps of at most `reach` into trees; `parent` (N,) are the parents. `order`: (M,),
+    these particles, sorted by their coordinate along a nonperiodic axis.
     """
     largest = 0.0
     for i in order:
@@ -138,10 +137,8 @@ def join(flights, order, positions, axis, reach, space, parent):
 @kernel
 def hold(flights, order, time, marks, parent, model, tally):
     """Fix the particles of each tree in which all particles rest and some touch others. Returns True if there
-    are any such trees.
-
-    order : particles
-    marks : (3, N), see `find_resting`; overwritten with marks of the trees
+    are any such trees. `order`: particles. `marks`: (3, N), see `find_resting`; overwritten with marks of the
+    trees.
     """
     touches, rests = marks[TOUCHES], marks[RESTS]
     island, any_held = model.law.duration.island, False
@@ -209,9 +206,8 @@ def free(i, gravity, law):
 
 @inner_helper
 def free_if_moved(i, j, rr, rv, gravity, law):
-    """Free particles of a jam among two colliding particles, if their contact can move them.
-
-    rr, rv : products of their separation and relative velocity
+    """Free particles of a jam among two colliding particles, if their contact can move them. `rr` and `rv`:
+    products of their separation and relative velocity.
     """
     if gravity is not None:
         if law is not None:
@@ -234,9 +230,7 @@ def _free_if_moved(i, j, rr, rv, gravity, law, duration):
 
 @inner_helper
 def pressed_particle(flights, i, j, law):
-    """Return the particle that is pressed by the jam of the other particle, or NONE. The two particles have
-    been advanced to their contact.
-    """
+    """Return the particle, both at their contact, that the other one's jam presses, or NONE."""
     if law is not None:
         return _pressed_particle(flights, i, j, law, law.duration)
     return NONE
@@ -324,10 +318,8 @@ def _add_walls(flights, positions, i, space, limits, walls):
 
 @inner_kernel
 def _is_stable(flights, n, largest, line, limits, model, stays):
-    """Return True if the fixed supports leave little of every acceleration of a particle.
-
-    n : index of the particle in the line
-    largest : largest radius
+    """Return True if the fixed supports leave little of every acceleration of a particle. `n`: index of the
+    particle in the line. `largest`: largest radius.
     """
     order, positions, axis = line
     i, support = order[n], limits.support
@@ -379,9 +371,7 @@ def free_unstable(flights, time, marks, model):
 
 @kernel
 def jam(flights, order, time, marks, parent, model, tally):
-    """Fix the particles (M,) of each tree that has a pressed or already fixed particle. Returns True if there
-    are any new ones.
-    """
+    """Fix the particles (M,) of trees with a pressed or fixed particle; return True if any are new."""
     pressed, duration, any_new = marks[PRESSED], model.law.duration, False
     for i in order:
         pressed[root_of(parent, i)] |= pressed[i] or is_jammed(duration, i)

@@ -45,9 +45,7 @@ STOP, EVENTS, FULL, COLLAPSE, NO_ROOM, CROSSED, CROWDED = range(7)
 
 @inner_helper
 def without_obstacles(model):
-    """Return the model without obstacles. Functions of contacts are then compiled once, not once per kind of
-    obstacle.
-    """
+    """Return the model without obstacles, so that functions of contacts are compiled once."""
     return Model(model.space, model.masses, model.gravity, model.law, None, None, None, model.shear, None)
 
 
@@ -87,9 +85,8 @@ def meet_particle(particles, i, j, time, queue, boxes, model, tally):
 
 @inner_helper
 def wake(particles, pair, queue, boxes, model, tally, event, law):
-    """Free the islands of two particles (2,) that have collided, unless a jam fixes them.
-
-    event : time and number of the event
+    """Free the islands of two particles (2,) that have collided, unless a jam fixes them. `event`: time and
+    number of the event.
     """
     if law is not None:
         _wake(particles, pair, queue, boxes, model, tally, event, law.duration)
@@ -108,9 +105,7 @@ def _wake(particles, pair, queue, boxes, model, tally, event, duration):
 
 @inner_helper
 def leave_box(particles, i, face, time, boxes, space, tally, lists):
-    """Move a particle into the next box, or renew its neighbour list. Returns the step (3,) into the next
-    box, 0 without a step.
-    """
+    """Move a particle into the next box, or renew its list; return the step (3,), 0 without one."""
     if lists is not None:
         renew(particles.flights, i, time, lists, space, tally)
         return NOT_CROSSED
@@ -176,9 +171,8 @@ def process(particles, i, time, queue, boxes, model, tally):
 
 @inner_helper
 def process_first(particles, event, boxes, model, tally):
-    """Process the earliest of all events, found by the search of all pairs.
-
-    event : time, particle, partner and face. The result has the form of the result of `process`
+    """Process the earliest of all events, found by the search of all pairs. `event`: time, particle, partner
+    and face. The result has the form of the result of `process`.
     """
     time, i, partner, face = event
     if partner < 0:
@@ -192,9 +186,7 @@ def process_first(particles, event, boxes, model, tally):
 
 @inner_helper
 def fetch_ahead(particles, queue, boxes, next_bucket, lists):
-    """Prefetch the next events' data if the inner processor caches do not hold all particles. Returns the
-    next bucket to prefetch for.
-    """
+    """Prefetch data beyond the processor's inner caches; return the next bucket to prefetch for."""
     if lists is not None:
         if len(particles.flights) > CACHED_LISTS:
             return prefetch_lists(particles, queue, lists, next_bucket)
@@ -206,12 +198,10 @@ def fetch_ahead(particles, queue, boxes, next_bucket, lists):
 @kernel
 def run(particles, queue, boxes, model, tally, monitors, limits, all_pairs):
     """Process events up to a time or a number of events. Returns (reason, number of events, number of
-    crossings and outdated contacts, time of the last event or crossing).
-
-    limits : (3,), time, maximum number of events (collisions, wall hits, attempts to enter), and maximum
-        number of crossings and outdated contacts
-    all_pairs : () for the search of all pairs before every event, without a queue; otherwise None. numba
-        omits only code that depends on an argument of type None, so both arguments are needed.
+    crossings and outdated contacts, time of the last event or crossing). `limits`: (3,), time, maximum number
+    of events (collisions, wall hits, attempts to enter), and maximum number of crossings and outdated
+    contacts. `all_pairs`: () for the search of all pairs before every event, without a queue; otherwise None.
+    numba omits only code that depends on an argument of type None, so both arguments are needed.
     """
     stop, most, most_crossed = limits
     done = crossed = 0

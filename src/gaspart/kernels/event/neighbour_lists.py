@@ -31,9 +31,7 @@ LISTED = np.dtype([("centre", "f8", 3), ("cell", "u4"), ("slot", "u4")], align=T
 
 
 def page_dtype(dimension: int) -> np.dtype:
-    """Return the data type of a page: WIDTH entries of a cell in two cache lines. A page contains the centres
-    and the numbers of the particles.
-    """
+    """Return the data type of a page: centres and numbers of WIDTH entries of a cell in two cache lines."""
     return np.dtype(
         {
             "names": ["centres", "members"],
@@ -65,12 +63,9 @@ class NeighbourLists(NamedTuple):
 
 
 def empty_neighbour_lists(cells, count, dimension, distances, room, per_cell):
-    """Return neighbour lists for `count` particles, without entries.
-
-    cells : `state.boxes.Boxes`
-    distances : margin, reach, clearance (3,)
-    room : length of a row; a list has fewer entries
-    per_cell : number of pages per cell
+    """Return neighbour lists for `count` particles, without entries. `cells`: `state.boxes.Boxes`.
+    `distances`: margin, reach, clearance (3,). `room`: length of a row; a list has fewer entries. `per_cell`:
+    number of pages per cell.
     """
     return NeighbourLists(
         listed=aligned_zeros((count,), LISTED),
@@ -170,11 +165,9 @@ def strike(lists, i, other):
 
 @inner_helper
 def list_matches(lists, i, page, matches, image, both):
-    """List the particles whose centres are near the centre of a particle.
-
-    page : first page
-    matches : one bit for each entry of the pages, WIDTH bits per page
-    both : True to also add the particle to their lists
+    """List the particles whose centres are near the centre of a particle. `page`: first page. `matches`: one
+    bit for each entry of the pages, WIDTH bits per page. `both`: True to also add the particle to their
+    lists.
     """
     while matches:
         slot = lowest(matches)
@@ -188,10 +181,8 @@ def list_matches(lists, i, page, matches, image, both):
 
 @inner_helper
 def list_cell(lists, i, point, cell, offset, image, both):
-    """List the particles in a cell whose centres are near the centre of a particle.
-
-    point : (3,), centre of the particle
-    offset : (3,), displacement of the cell into an image of the container
+    """List the particles in a cell whose centres are near the centre of a particle. `point`: (3,), centre of
+    the particle. `offset`: (3,), displacement of the cell into an image of the container.
     """
     page = cell * uint64(lists.per_cell)
     end = page + max((uint64(lists.filled[cell]) + uint64(WIDTH - 1)) // uint64(WIDTH), uint64(1))
@@ -219,9 +210,8 @@ def list_row(lists, i, point, first, offset, image, both):
 
 @inner_kernel
 def list_near(lists, i, lengths, both):
-    """List the particles whose centres are near the centre of a particle.
-
-    both : True to also add the particle to their lists
+    """List the particles whose centres are near the centre of a particle. `both`: True to also add the
+    particle to their lists.
     """
     number, centre, neighbour, shift = uint64(i), lists.listed[i].centre, lists.neighbour, lists.shift
     point = centre[0], centre[1], centre[2]
@@ -259,10 +249,7 @@ def centre_on(lists, flights, i, time, lengths):
 
 @inner_kernel
 def renew(flights, i, time, lists, space, tally):
-    """Renew the list of a particle, and its entries in the lists of others.
-
-    time : present time
-    """
+    """Renew the list of a particle, and its entries in the lists of others. `time`: present time."""
     tally.counts[CROSSINGS] += 1
     row = i * lists.room
     for n in range(row + 1, row + 1 + int64(lists.candidates[row])):

@@ -33,9 +33,7 @@ from gaspart.kernels.physics.running_sum import add
 
 @inner_helper
 def least_parting(flights, i, j, space, gravity, law):
-    """Return the minimum separation speed of two touching particles; 0 if nothing presses them. Both
-    particles have been advanced to the present time.
-    """
+    """Return the minimum separation speed of two touching particles; 0 if nothing presses them."""
     if gravity is not None:
         if law is not None:
             return _pressed_parting(flights, i, j, space, gravity, law.duration)
@@ -111,9 +109,7 @@ def _release_from(flights, i, j, model, tally, gravity, law):
 
 @inner_helper
 def _rests_below(flights, i, j, space, tally, gravity, law):
-    """Put the first of two particles to rest in the wedge below a fixed second particle. Returns True if it
-    rests between its support and the second particle.
-    """
+    """Put a particle to rest in the wedge below a fixed one; return True if it rests there."""
     if law is not None:
         if law.inverse_mass[j] == 0.0:
             return _rests_below_fixed(flights, i, j, space, tally, gravity, law, law.duration)
@@ -188,11 +184,9 @@ def _kick(flights, i, width, key, number, space):
 
 @kernel
 def kick_all(flights, time, width, counter, model, injected_energy):
-    """Advance all particles to `time`, and kick them without changing the total momentum.
-
-    width : width of the distribution of kicks for mass 1
-    counter : words (2,) of the key, and number of the kick
-    injected_energy : (1, 2), energy given to the particles, see `physics.running_sum.add`
+    """Advance all particles to `time`, and kick them without changing the total momentum. `width`: width of
+    the distribution of kicks for mass 1. `counter`: words (2,) of the key, and number of the kick.
+    `injected_energy`: (1, 2), energy given to the particles, see `physics.running_sum.add`.
     """
     (key, number), space = counter, model.space
     total = px = py = pz = 0.0

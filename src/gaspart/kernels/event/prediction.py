@@ -71,9 +71,8 @@ def images_along(axis, space):
 
 @inner_kernel
 def test_pair(particles, i, other, image, space, tally, gravity):
-    """Predict the contact with an image of another particle, if it is the earliest so far.
-
-    image : (3,), image of the container
+    """Predict the contact with an image of another particle, if it is the earliest so far. `image`: (3,),
+    image of the container.
     """
     d = len(space.lengths)
     predictions = particles.predictions
@@ -88,10 +87,8 @@ def test_pair(particles, i, other, image, space, tally, gravity):
 
 @inner_kernel
 def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of a small particle with oversized particles near its box.
-
-    crossed : (3,), step into that box, or 0; after a step only particles are searched that were not near
-        before
+    """Search for an earlier contact of a small particle with oversized particles near its box. `crossed`:
+    (3,), step into that box, or 0; after a step only particles are searched that were not near before.
     """
     here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
     images_x, images_y, images_z = images_along(0, space), images_along(1, space), images_along(2, space)
@@ -111,9 +108,7 @@ def find_oversized(particles, i, boxes, space, tally, crossed, gravity, oversize
 
 @inner_helper
 def span(here, n, width, square, periodic):
-    """Return the first and last coordinate of boxes along an axis that may be near. On a periodic axis the
-    coordinates continue beyond the container.
-    """
+    """Return first and last coordinate of boxes along an axis that may be near, beyond periodic faces too."""
     steps = int(sqrt(square) / width) + 2
     if periodic:
         return here - min(steps, n), here + min(steps, n)
@@ -128,10 +123,8 @@ def image_of(coordinate, n):
 
 @inner_kernel
 def find_around(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for an earlier contact of an oversized particle with particles in near boxes.
-
-    crossed : (3,), step into the present box, or 0; after a step only boxes that were not near before are
-        searched
+    """Search for an earlier contact of an oversized particle with particles in near boxes. `crossed`: (3,),
+    step into the present box, or 0; after a step only boxes that were not near before are searched.
     """
     here, n, widths = particles.predictions[i].box, boxes.per_side, boxes.widths
     square = reach_square(particles.flights, i, oversized)
@@ -173,9 +166,8 @@ def find_other_oversized(particles, i, space, tally, gravity, oversized):
 
 @inner_helper
 def search_oversized(particles, i, boxes, space, tally, crossed, gravity, oversized):
-    """Search for contacts with oversized particles, which `find_contact` does not find.
-
-    crossed : (3,), step into the present box, or 0
+    """Search for contacts with oversized particles, which `find_contact` does not find. `crossed`: (3,), step
+    into the present box, or 0.
     """
     if oversized is not None:
         if particles.flights[i].radius <= oversized.largest_radius:
@@ -192,9 +184,7 @@ NOT_CROSSED = (int64(0), int64(0), int64(0))
 
 @inner_helper
 def without_contacts(model):
-    """Return the model without the parts that are used only at contacts. Predictions do not depend on these
-    parts.
-    """
+    """Return the model without the parts for contacts, on which predictions do not depend."""
     obstacles = model.faces, model.walls, model.oversized
     return Model(model.space, None, model.gravity, None, *obstacles, model.shear, None)
 
@@ -227,10 +217,8 @@ def predict_face(particles, i, boxes, model, now):
 @inner_helper
 def predict_meeting(particles, i, boxes, model, tally, number, crossed):
     """Predict the next contact of a particle. If the particle has just crossed into the next box, only new
-    neighbours of this box are searched.
-
-    number : number of the present event
-    crossed : (3,), step into the present box, or 0
+    neighbours of this box are searched. `number`: number of the present event. `crossed`: (3,), step into the
+    present box, or 0.
     """
     predictions = particles.predictions
     if crossed[0] == 0 and crossed[1] == 0 and crossed[2] == 0:
@@ -276,10 +264,8 @@ def begin(particles, queue, boxes, model, tally, now, anew):
 
 @inner_helper
 def predict_after(particles, pair, queue, boxes, model, tally, event, crossed):
-    """Predict the next events of the particles of an event.
-
-    pair : (2,), the particles; the second may be NONE
-    event : time, number, and True if the event changed flights
+    """Predict the next events of the particles of an event. `pair`: (2,), the particles; the second may be
+    NONE. `event`: time, number, and True if the event changed flights.
     """
     predictions = particles.predictions
     time, number, changes = event
@@ -327,9 +313,8 @@ def predict_walls(particles, time, queue, boxes, model, moving):
 
 @inner_helper
 def predict_after_piston(particles, partner, time, queue, boxes, model, faces, walls):
-    """Predict hits of other particles again after a hit that changed a piston or moving wall.
-
-    partner : -1 minus the number of the face or wall that was hit
+    """Predict hits of other particles again after a hit that changed a piston or moving wall. `partner`: -1
+    minus the number of the face or wall that was hit.
     """
     if faces is not None:
         _predict_after_piston(particles, partner, time, queue, boxes, model, faces.piston)

@@ -26,8 +26,8 @@ _FETCHED = 2  # number of entries of a box whose particles are fetched; few boxe
 
 @inner_helper
 def steps(side, is_one):
-    """Return the first step and the end (0..3) of the boxes to search along an axis. These are all boxes, the
-    boxes on one side, or the only existing box.
+    """Return first step and end (0..3) of the boxes to search along an axis: all, one side, or the
+    only one.
     """
     return (uint64(1 + side), uint64(2 + side)) if side or is_one else (uint64(0), uint64(3))
 
@@ -35,10 +35,8 @@ def steps(side, is_one):
 @inner_helper
 def fetch_about(flights, boxes, at, side, members):
     """Fetch the lists of the boxes around a box, or with `members` their particles. The particles are fetched
-    after the lists have arrived.
-
-    at : (3,), coordinates of the box
-    side : (3,), -1 or 1 for an axis along which only boxes on this side are fetched, otherwise 0
+    after the lists have arrived. `at`: (3,), coordinates of the box. `side`: (3,), -1 or 1 for an axis along
+    which only boxes on this side are fetched, otherwise 0.
     """
     neighbour = boxes.neighbour
     last_particle = uint32(len(flights) - 1)
@@ -176,9 +174,8 @@ def prefetch_lists(particles, queue, lists, next_bucket):
 
 @inner_helper
 def prefetch(particles, queue, boxes, next_bucket):
-    """Fetch the data of events some buckets ahead; return the next bucket.
-
-    next_bucket : first bucket whose data have not been fetched yet
+    """Fetch the data of events some buckets ahead; return the next bucket. `next_bucket`: first bucket whose
+    data have not been fetched yet.
     """
     flights, predictions = particles.flights, particles.predictions
     head, mask = queue.head, len(queue.head) - 2

@@ -171,9 +171,7 @@ def _recall_overflow(queue, predictions):
 
 @inner_kernel
 def _leap(queue, predictions):
-    """Advance to the first event of the overflow; return False if there are no events. All other buckets must
-    be empty.
-    """
+    """Advance to the first event of the overflow, all other buckets being empty; False without events."""
     first = np.inf
     i = np.int64(queue.head[len(queue.head) - 1])
     while i >= 0:
@@ -195,9 +193,7 @@ def _is_before(predictions, i, j):
 
 @inner_kernel
 def _merge(predictions, head, other_head):
-    """Merge two sorted lists of particles; return the first particle. The lists are linked by `after` and end
-    with -1.
-    """
+    """Merge two sorted lists of particles, linked by `after` up to -1; return the first particle."""
     first = last = np.int64(-1)
     while head >= 0 or other_head >= 0:
         if other_head < 0 or (head >= 0 and _is_before(predictions, head, other_head)):
@@ -228,9 +224,7 @@ def _cut(predictions, first, count):
 
 @inner_kernel
 def _sort(predictions, first, count):
-    """Sort a list of `count` particles; return the first particle. The list is linked by `after` and ends
-    with -1.
-    """
+    """Sort a list of `count` particles, linked by `after` up to -1; return the first particle."""
     length = 1
     while length < count:
         rest, last, first = first, np.int64(-1), np.int64(-1)

@@ -66,9 +66,7 @@ def _search_sheared(particles, i, boxes, space, tally, crossed, shear):
 
 @inner_helper
 def search_sheared(particles, i, boxes, space, tally, crossed, shear):
-    """Predict the contact with a particle across a sheared face, if it is the earliest. `boxes.find_contact`
-    explains the arguments.
-    """
+    """Predict an earlier contact across a sheared face; `boxes.find_contact` explains the arguments."""
     if shear is not None:
         _search_sheared(particles, i, boxes, space, tally, crossed, shear)
 

@@ -87,9 +87,7 @@ def contact_times(
 ) -> Lanes:
     """Return the contact times of one particle and eight others in images (d,) of a container. This is
     `flight.time_of_contact` for columns of rows. All particles fall with the same acceleration `pull` (d,),
-    or do not fall without it.
-
-    lengths : (d,), side lengths of the container
+    or do not fall without it. `lengths`: (d,), side lengths of the container.
     """
     d = len(lengths)
     pull = [particle[0].all(component) for component in pull] or [None] * d
@@ -182,11 +180,9 @@ def load_candidates(builder: ir.IRBuilder, address: ir.Value) -> tuple[Lanes, La
 def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
     """Return the earliest contact of a particle with candidates, if it is earlier than `present`. The result
     is (time, partner, bits). A bit is set for each candidate whose contact was not computed, because it or
-    the particle may not fall, see `flight.mark_resting`.
-
-    span : first candidate and number of candidates
-    present : time and partner of the earliest contact so far
-    boxes : named tuple with `candidates` and, under gravity, `resting`
+    the particle may not fall, see `flight.mark_resting`. `span`: first candidate and number of candidates.
+    `present`: time and partner of the earliest contact so far. `boxes`: named tuple with `candidates` and,
+    under gravity, `resting`.
     """
 
     def generate(context, builder, signature, arguments):
@@ -239,10 +235,8 @@ def earliest(typingctx, flights, i, span, present, boxes, space, gravity):
 def nearer(typingctx, pages, page, point, offset, square):
     """Return a bit for each of the WIDTH points of a page near a point. A point is near if the square of its
     distance is below `square`. The arithmetic is in single precision, and the result does not depend on the
-    order of the two points. `neighbour_lists.page_dtype` describes the page.
-
-    point : (3,)
-    offset : (3,), displacement of the page
+    order of the two points. `neighbour_lists.page_dtype` describes the page. `point`: (3,). `offset`: (3,),
+    displacement of the page.
     """
 
     def generate(context, builder, signature, arguments):
@@ -297,9 +291,7 @@ def equal(typingctx, numbers, start, number, mask):
 
 @intrinsic
 def list_box(typingctx, candidates, count, members, box, image):
-    """Write all entries of a box, in an image, into `candidates`. Unused entries are written, too. Writing
-    begins at index `count`.
-    """
+    """Write all entries of a box, used or not, in an image, into `candidates` from index `count`."""
 
     def generate(context, builder, signature, arguments):
         near, count, members, box, image = arguments

@@ -167,9 +167,7 @@ def add_sheared_flights(flights, time, sign, model, stress):
 
 @inner_helper
 def end_flight(flights, i, time, model, stress, shear):
-    """Add the transport by a particle up to an event. The particle has not been advanced to this
-    event yet.
-    """
+    """Add the transport by a particle up to an event to which it has not been advanced yet."""
     if shear is not None:
         _end_flight(flights, i, time, model, stress, shear)
 

@@ -42,9 +42,8 @@ def to_plate(rows, m, point):
 
 @inner_helper
 def to_wall(rows, m, point, lengths):
-    """Return the vector from a point to the nearest point of an interior wall.
-
-    lengths : (d,), side lengths of the container; their number determines the kind of wall
+    """Return the vector from a point to the nearest point of an interior wall. `lengths`: (d,), side lengths
+    of the container; their number determines the kind of wall.
     """
     if len(lengths) == 2:
         return to_segment(rows, m, point)

@@ -47,10 +47,8 @@ def _components(row, x, y, z):
 
 @inner_kernel
 def time_to_point(r, v, g, radius):
-    """Return the time until a sphere touches a point or a line.
-
-    r, v, g : (3,), separation from the point, velocity and acceleration; for a line, the components along it
-        are 0
+    """Return the time until a sphere touches a point or a line. `r` and `v` and `g`: (3,), separation from
+    the point, velocity and acceleration; for a line, the components along it are 0.
     """
     rr = r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
     rv = r[0] * v[0] + r[1] * v[1] + r[2] * v[2]
@@ -66,10 +64,9 @@ def time_to_point(r, v, g, radius):
 @inner_kernel
 def time_to_edge(r, v, g, length, radius):
     """Return the time until a sphere touches an edge. A falling sphere may touch the line next to the edge,
-    leave it, and touch it again at the edge.
-
-    r, v, g : (3,), separation, velocity and acceleration; the first two components are across the line, the
-        third component is along the line, measured from its start
+    leave it, and touch it again at the edge. `r` and `v` and `g`: (3,), separation, velocity and
+    acceleration; the first two components are across the line, the third component is along the line,
+    measured from its start.
     """
     x, z, y = r
     vx, vz, vy = v
@@ -137,9 +134,7 @@ def time_to_plate(flights, i, rows, m, space, gravity):
 
 @inner_kernel
 def time_to_segment(flights, i, rows, m, space, gravity):
-    """Return the time at which a disc touches a segment; inf if it does not. The contact is on a side
-    (Spencer 2022, Eqs. 3-12) or at an end.
-    """
+    """Return the time at which a disc touches a segment or its end, or inf (Spencer 2022, Eqs. 3-12)."""
     radius = flights[i].radius
     ux, uy, length = rows[m].direction[0], rows[m].direction[1], rows[m].length
     dx = flights[i].position[0] - rows[m].start[0]
@@ -191,9 +186,7 @@ def time_to_wall(flights, i, rows, m, space, gravity, lengths):
 
 @inner_kernel
 def next_wall(flights, predictions, i, boxes, space, gravity, walls, face_time):
-    """Return the next wall near the box of a particle that it hits: (time, row). Without a hit before
-    `face_time` the result is (face_time, -1).
-    """
+    """Return the next wall near its box that a particle hits: (time, row), or (face_time, -1)."""
     box = box_of(predictions, boxes, i)
     if flights[i].radius > walls.largest_radius:
         box = len(walls.first) - 2
@@ -228,9 +221,7 @@ def mass_in(masses, i):
 
 @inner_helper
 def coordinate_along(flights, i, row, edge, lengths):
-    """Return the coordinate of a particle along an edge of a wall. The result is (coordinate of the centre,
-    length, unit vector of the edge).
-    """
+    """Return a particle's coordinate along a wall's edge, the edge's length, and its unit vector."""
     p = flights[i].position
     if len(lengths) == 2:
         u, length = (row.direction[0], row.direction[1], 0.0), row.length
@@ -284,9 +275,8 @@ def settle_on(flights, i, m, normal, model, tally, walls, gravity):
 
 @inner_helper
 def bounce_off(flights, i, normal, model, tally, law):
-    """Reflect a particle at a hard wall; return the momentum given to the wall.
-
-    normal : (3,), unit vector towards the wall
+    """Reflect a particle at a hard wall; return the momentum given to the wall. `normal`: (3,), unit vector
+    towards the wall.
     """
     space = model.space
     least = least_speed(flights, i, space)
@@ -332,8 +322,8 @@ def collide_interior(flights, i, m, model, tally, walls, moving):
 
 @inner_helper
 def meet_wall(flights, i, face, time, model, tally, walls):
-    """Advance a particle to an interior wall and reflect it; return the number of the wall. Returns NONE if
-    the particle has slid along the wall and leaves it.
+    """Advance a particle to an interior wall and reflect it; return the wall's number, NONE if it
+    slid off.
     """
     if walls is not None:
         advance(flights, i, time, model.space, model.gravity)

@@ -46,10 +46,8 @@ def fly_piston(position, velocity, push, late):
 
 @kernel
 def time_to_piston(x, v, position, velocity, push):
-    """Return the time until a particle touches a piston; inf if it never does.
-
-    x : height of the particle
-    v : inward velocity of the particle
+    """Return the time until a particle touches a piston; inf if it never does. `x`: height of the particle.
+    `v`: inward velocity of the particle.
     """
     stop = time_to_stop(position, velocity, push)
     time = time_to_side(x - position, velocity - v, push)
@@ -77,9 +75,7 @@ def next_piston(particles, i, space, piston):
 
 @inner_helper
 def find_piston(particles, i, axis, space, piston):
-    """Return (time, face code) of the contact with a piston across an axis. The time is inf if there is no
-    piston across this axis.
-    """
+    """Return (time, face code) of the contact with a piston across an axis; inf without a piston."""
     if piston is None:
         return inf, NONE
     if piston.face // 2 != axis:
@@ -196,9 +192,7 @@ def collide_moving_wall(flights, i, model, tally, moving):
 
 @inner_helper
 def bounce(flights, i, face, model, tally, law):
-    """Reflect a particle at a hard face, by the collision law if there is one. Returns the momentum given to
-    the face.
-    """
+    """Reflect a particle at a hard face, by the law if any; return the momentum given to the face."""
     axis = face // 2
     if law is None:
         velocity = flights[i].velocity[axis]
@@ -225,9 +219,8 @@ def place_and_velocity(time, sine, stroke, period):
 
 @inner_helper
 def time_to_sawtooth(gap, closing, pull, duration):
-    """Return the time until a particle touches a uniformly moving face, and True if it does.
-
-    duration : time for which the face moves uniformly; without a contact it is the result
+    """Return the time until a particle touches a uniformly moving face, and True if it does. `duration`: time
+    for which the face moves uniformly; without a contact it is the result.
     """
     time = time_to_side(gap, closing, pull)
     return (time, True) if time < duration else (duration, False)
@@ -254,10 +247,9 @@ def time_to_vibrating(x, v, a, clocks, at, sine, stroke, period):
     rounding. Above the stroke the particle flies to the stroke without a search. Within the stroke, each step
     of the search ends before the first contact, for any motion of the face, so no contact is missed. With the
     largest acceleration of the face, the steps converge quadratically to the contact, like Newton's method.
-
-    x, v, a : height, inward velocity and acceleration of the particle
-    clocks : time since the start of the epoch, and length of the epoch, at the time of x and v
-    at : time within the period of the face, at the time of x and v
+    `x` and `v` and `a`: height, inward velocity and acceleration of the particle. `clocks`: time since the
+    start of the epoch, and length of the epoch, at the time of x and v. `at`: time within the period of the
+    face, at the time of x and v.
     """
     largest = 0.5 * stroke * (TURN / period) * (TURN / period) + abs(a)
     clock, epoch = clocks

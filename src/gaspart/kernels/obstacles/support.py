@@ -33,9 +33,7 @@ def dot(a, b):
 
 @inner_helper
 def is_resting_on(support, i, row):
-    """Return True if a particle rests on, or slides along, the wall with this row. The wall is an interior
-    wall.
-    """
+    """Return True if a particle rests on, or slides along, the interior wall of this row."""
     if support is None:
         return False
     rests = False
@@ -46,9 +44,7 @@ def is_resting_on(support, i, row):
 
 @inner_helper
 def rests_on(i, row, gravity):
-    """Return True if a particle rests on, or slides along, the wall with this row. Without gravity the result
-    is False.
-    """
+    """Return True if a particle rests on, or slides along, the wall of this row; False without gravity."""
     if gravity is None:
         return False
     return is_resting_on(gravity.support, i, row)
@@ -56,9 +52,8 @@ def rests_on(i, row, gravity):
 
 @inner_kernel
 def within(support, i, planes, vector, dimension):
-    """Project a vector on a plane, or on the intersection of two planes.
-
-    planes : two planes; if the second is -1, the projection is on the first plane
+    """Project a vector on a plane, or on the intersection of two planes. `planes`: two planes; if the second
+    is -1, the projection is on the first plane.
     """
     first, second = planes
     n = support.normal[i, first]
@@ -100,8 +95,8 @@ def leave_of(acceleration, support, i, dimension):
 
 @inner_kernel
 def find_pull(gravity, i, dimension):
-    """Compute the part of gravity that the planes of a particle leave. Planes from which it leads away are
-    removed.
+    """Compute the part of gravity that a particle's planes leave, and remove planes from which it
+    leads away.
     """
     support = gravity.support
     acceleration = pull_along(gravity, 0), pull_along(gravity, 1), pull_along(gravity, 2)
@@ -119,8 +114,8 @@ def find_pull(gravity, i, dimension):
 
 @inner_helper
 def add_plane(flights, i, normal, row, space, support):
-    """Add the plane that a particle touches in the direction of a unit vector (3,). A fourth plane replaces
-    the third.
+    """Add the plane that a particle touches in the direction of a unit vector (3,); a fourth replaces the
+    third.
     """
     n = min(support.number[i], 2)
     support.normal[i, n, 0], support.normal[i, n, 1], support.normal[i, n, 2] = (
@@ -176,9 +171,7 @@ def pressing(flights, i, normal, space, gravity, longest):
 
 @inner_kernel
 def release(flights, i, space, support):
-    """Remove the support of a particle, so that the full gravity acts on it. The particle is placed exactly
-    at the walls on which it rested.
-    """
+    """Release a particle, exactly at the walls on which it rested, to the full gravity."""
     if support is None:
         return
     for n in range(support.number[i]):
@@ -265,9 +258,7 @@ def come_to_rest_again(flights, i, longest, space, gravity, support):
 def rest_in_wedge(flights, i, normal, particle, space, tally, gravity, support):
     """Put a particle to rest in a wedge after a bounce; return True if it rests. It rests between its support
     and the obstacle of the bounce, which is in the direction of the unit vector `normal` (3,), if it would
-    hit the obstacle again at once.
-
-    particle : its mass, and the longest bounce that counts as rest
+    hit the obstacle again at once. `particle`: its mass, and the longest bounce that counts as rest.
     """
     mass, longest = particle
     v = velocity_of(flights, i, space)
@@ -302,11 +293,9 @@ _HOP = 2.0**20  # shortest bounce where a particle cannot rest, in units of `sho
 @inner_kernel
 def come_to_rest(flights, i, normal, contact, mass, space, tally, gravity):
     """Put a particle to rest after a bounce that is too short to be resolved. If the particle cannot rest
-    there, its bounce is made long enough to be resolved.
-
-    normal : (3,), unit vector towards the wall
-    contact : row of the wall, True if it is touched at an end (where only a balanced particle can rest), and
-        the longest bounce that counts as rest
+    there, its bounce is made long enough to be resolved. `normal`: (3,), unit vector towards the wall.
+    `contact`: row of the wall, True if it is touched at an end (where only a balanced particle can rest), and
+    the longest bounce that counts as rest.
     """
     row, at_end, longest = contact
     support = gravity.support
@@ -356,9 +345,8 @@ def time_to_leave(at, speed, pull, length):
 
 @inner_helper
 def leave(flights, i, edge, at, length, space):
-    """Move a particle at the end of a wall beyond the end, by more than rounding.
-
-    edge : (3,), unit vector along which the coordinate of the particle is `at`
+    """Move a particle at the end of a wall beyond the end, by more than rounding. `edge`: (3,), unit vector
+    along which the coordinate of the particle is `at`.
     """
     beyond = length
     for k in range(len(space.lengths)):

@@ -29,9 +29,7 @@ from gaspart.kernels.physics.running_sum import add
 @inner_helper
 def mirrors(i, face, number, key, accommodation):
     """Return True if a face reflects a particle specularly at this hit (Maxwell's model). The decision uses a
-    random word of block 0; `flux_speed` uses another word of this block.
-
-    number : number of the hit
+    random word of block 0; `flux_speed` uses another word of this block. `number`: number of the hit.
     """
     if accommodation is None:
         return False
@@ -93,9 +91,8 @@ def collide_thermal(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def add_shear(flights, i, face, mass, sliding):
-    """Add the momentum of a particle along a face to the momentum given to the face.
-
-    mass : negative if the particle receives the momentum
+    """Add the momentum of a particle along a face to the momentum given to the face. `mass`: negative if the
+    particle receives the momentum.
     """
     if sliding is not None:
         d = sliding.velocity.shape[1]
@@ -115,11 +112,8 @@ def drag(flights, i, face, mass, sliding):
 
 @inner_kernel
 def draw_spin(i, wall, level, key, counter, dimension, tally, law):
-    """Draw the spin of a rough particle; in two dimensions it has one component.
-
-    wall : row of the tally
-    level : temperature
-    counter : number of the draw, and first block of random words for the draw
+    """Draw the spin of a rough particle; in two dimensions it has one component. `wall`: row of the tally.
+    `level`: temperature. `counter`: number of the draw, and first block of random words for the draw.
     """
     if law is None:
         return
@@ -141,9 +135,8 @@ def draw_spin(i, wall, level, key, counter, dimension, tally, law):
 @inner_helper
 def leave_warm(flights, i, wall, normal, model, tally, law, warm):
     """Give a particle the velocity with which it leaves an interior wall with a temperature. Returns the
-    momentum given to the wall along the normal, or -1 if the wall is hard.
-
-    normal : (3,), unit vector towards the wall
+    momentum given to the wall along the normal, or -1 if the wall is hard. `normal`: (3,), unit vector
+    towards the wall.
     """
     if warm is None:
         return -1.0
@@ -177,8 +170,8 @@ def _leave_warm(flights, i, wall, normal, model, tally, law, warm):
 
 @inner_helper
 def tangents(normal, dimension):
-    """Return two unit vectors (3,) perpendicular to each other and to a unit vector `normal` (3,). In two
-    dimensions the first vector is in the plane.
+    """Return two orthogonal unit vectors (3,) across a unit vector `normal` (3,); in 2D the first is in the
+    plane.
     """
     x, y, z = normal
     if dimension == 2:
@@ -232,9 +225,7 @@ def collide_sticky(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def is_held(flights, i, axis, masses, law, faces, sticky):
-    """Return True if a particle sticks to a face across an axis. Then the face absorbs its velocity along
-    this axis.
-    """
+    """Return True if a particle sticks to a face across an axis, which absorbs its velocity."""
     side = faces.well_side[i, axis]
     face = 2 * axis + (1 if side > 0 else 0)
     if side == 0 or not sticky[face]:
@@ -339,9 +330,7 @@ def time_to_edge(flights, i, axis, space, faces):
 
 @inner_helper
 def cross_edge(flights, i, face, model, tally, law, faces):
-    """Move a particle into a well, or out of it if it is fast enough. The wall receives the momentum
-    change.
-    """
+    """Move a particle into a well, or out of it if fast enough; the wall receives its change of momentum."""
     axis = face // 2
     flights[i].position[axis] = edge_plane(flights, i, face, model.space, faces)
     side = 1.0 if face % 2 else -1.0
@@ -369,9 +358,7 @@ def collide_edge(flights, i, face, model, tally, law, faces):
 
 @inner_helper
 def meet_edge(flights, i, face, time, model, tally, faces):
-    """Advance a particle to the edge of a well, where it crosses or is reflected. Returns the number of the
-    face.
-    """
+    """Advance a particle to a well's edge, to cross it or be reflected; return the number of the face."""
     if faces is not None:
         advance(flights, i, time, model.space, model.gravity)
         velocity = velocity_before(flights, i, tally.per_area)

@@ -37,9 +37,8 @@ def time_against(gap, speed, pull):
 def time_along(gap, speed, pull):
     """Return the time to cross a `gap` in the direction of an acceleration `pull` > 0. This is the larger
     root of gap - speed t - pull t^2 / 2 = 0. If rounding leaves the gap closed (< 0) at the turning point, as
-    for a particle that has just left a floor, the result is the time of the turning point.
-
-    speed : initial speed; negative if directed away from the end of the gap
+    for a particle that has just left a floor, the result is the time of the turning point. `speed`: initial
+    speed; negative if directed away from the end of the gap.
     """
     if speed >= 0.0:
         if gap <= 0.0:
@@ -52,11 +51,8 @@ def time_along(gap, speed, pull):
 
 @inner_helper
 def time_to_side(gap, closing, pull):
-    """Return the time until a particle touches the side on which it is, or inf.
-
-    gap : distance to the side
-    closing : speed of approach
-    pull : acceleration towards the side
+    """Return the time until a particle touches the side on which it is, or inf. `gap`: distance to the side.
+    `closing`: speed of approach. `pull`: acceleration towards the side.
     """
     if pull > 0.0:
         return time_along(gap, closing, pull)
@@ -85,9 +81,7 @@ def _polynomial(c0, c1, c2, c3, c4, t):
 
 @inner_helper
 def _root_between(c0, c1, c2, c3, c4, low, high):
-    """Find a root of a quartic between `low` and `high`, where its signs differ. The method is Newton's
-    method safeguarded by bisection.
-    """
+    """Find the root of a quartic between `low` and `high`, by Newton's method with bisection."""
     falls = _polynomial(c0, c1, c2, c3, c4, low) > 0.0
     t = 0.5 * (low + high)
     for _ in range(_HALVINGS):
@@ -157,8 +151,8 @@ def time_to_contact_pulled(gap, rv, vv, ra, va, aa):
 
 @kernel
 def time_of_summit(rv, vv, ra, va, aa):
-    """Return the time of the largest distance between two approaches; inf for a single approach.
-    `time_to_contact_pulled` explains the arguments.
+    """Return the time of the largest distance between two approaches; inf for one
+    (`time_to_contact_pulled`).
     """
     c1, c2, c3, c4 = 2.0 * rv, vv + ra, va, 0.25 * aa
     square = 9.0 * c3 * c3 - 24.0 * c4 * c2

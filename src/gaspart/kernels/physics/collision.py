@@ -27,9 +27,7 @@ LEAST = 2.0**-48  # minimum separation speed / speed: less would let rounding re
 
 @inner_helper
 def gap_along(flights, i, j, axis, space):
-    """Return the separation of two particles along an axis, for the nearest image. Along a third axis in two
-    dimensions it is 0.
-    """
+    """Return the separation along an axis, for the nearest image; 0 along a third axis in 2D."""
     if axis >= len(space.lengths):
         return 0.0
     gap = flights[j].position[axis] - flights[i].position[axis]
@@ -106,11 +104,9 @@ def spin_of(flights, i, law):
 
 @inner_helper
 def slip(velocity, spin, normal):
-    """Return the tangential relative velocity (3,) of two surfaces (Spencer 2022, Eq. 30).
-
-    velocity : relative velocity of the centres
-    spin : sum of the spins multiplied by the radii
-    normal : unit vector from the first to the second
+    """Return the tangential relative velocity (3,) of two surfaces (Spencer 2022, Eq. 30). `velocity`:
+    relative velocity of the centres. `spin`: sum of the spins multiplied by the radii. `normal`: unit vector
+    from the first to the second.
     """
     x, y, z = normal
     gx = velocity[0] + (spin[1] * z - spin[2] * y)
@@ -131,10 +127,9 @@ def lose(approach, mobility, normal, usual, law, tally):
 
 @inner_helper
 def rub(velocity, mobility, lever, tangential, law, tally):
-    """Return the tangential impulse (3,) on the first of two surfaces, and count its energy.
-
-    velocity : (3,), tangential relative velocity
-    mobility, lever, tangential : see `contact.tangential_impulse`
+    """Return the tangential impulse (3,) on the first of two surfaces, and count its energy. `velocity`:
+    (3,), tangential relative velocity. `mobility` and `lever` and `tangential`: see
+    `contact.tangential_impulse`.
     """
     factor = tangential_impulse(mobility, lever, tangential)
     gx, gy, gz = velocity
@@ -148,9 +143,8 @@ def rub(velocity, mobility, lever, tangential, law, tally):
 
 @inner_helper
 def add_spin(flights, i, normal, impulse, law):
-    """Add the spin due to an impulse (3,) at a surface point (Spencer 2022, Eq. 26).
-
-    normal : unit vector towards the surface point
+    """Add the spin due to an impulse (3,) at a surface point (Spencer 2022, Eq. 26). `normal`: unit vector
+    towards the surface point.
     """
     factor = flights[i].radius * law.inverse_inertia[i]
     law.spins[i, 0] += factor * (normal[1] * impulse[2] - normal[2] * impulse[1])
@@ -217,10 +211,8 @@ def collide_by_law(flights, i, j, rr, rv, space, tally, law):
 @inner_kernel
 def collide_wall_by_law(flights, i, normal, least, space, tally, law):
     """Apply the collision law to a particle at a wall (Spencer 2022, Eq. 40). Returns the momentum given to
-    the wall along the normal.
-
-    normal : (3,), unit vector towards the wall
-    least : minimum separation speed
+    the wall along the normal. `normal`: (3,), unit vector towards the wall. `least`: minimum separation
+    speed.
     """
     mobility = law.inverse_mass[i]
     velocity = velocity_of(flights, i, space)
@@ -242,9 +234,7 @@ def collide_wall_by_law(flights, i, normal, least, space, tally, law):
 
 @inner_helper
 def is_fixed(i, law, duration):
-    """Return True if a particle is fixed. A particle fixed by a jam has no mobility, but does not count as
-    fixed.
-    """
+    """Return True if a particle is fixed, not by a jam alone."""
     if duration is not None:
         return duration.inverse_mass[i] == 0.0
     return law.inverse_mass[i] == 0.0
@@ -260,9 +250,7 @@ def meets_fixed(i, j, law):
 
 @inner_helper
 def exchange_momentum(flights, i, j, rr, rv, model, tally, law):
-    """Apply the collision law to a pair in contact; return |r . dp|. Without a law the collision is
-    elastic.
-    """
+    """Apply the collision law, or an elastic collision, to a pair in contact; return |r . dp|."""
     if law is None:
         return collide_smooth(flights, i, j, rr, rv, model.space, model.masses)
     return collide_by_law(flights, i, j, rr, rv, model.space, tally, law)

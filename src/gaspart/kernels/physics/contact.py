@@ -72,19 +72,17 @@ def normal_change(approach, restitution, least):
 
 @inner_helper
 def tangential_impulse(inverse_mass, lever, restitution):
-    """Return the impulse divided by the tangential relative velocity (Spencer 2022, Eq. 38).
-
-    inverse_mass : 1/m1 + 1/m2, with 0 for a fixed particle or wall
-    lever : R1^2/I1 + R2^2/I2, with 0 for a fixed particle or wall
+    """Return the impulse divided by the tangential relative velocity (Spencer 2022, Eq. 38). `inverse_mass`:
+    1/m1 + 1/m2, with 0 for a fixed particle or wall. `lever`: R1^2/I1 + R2^2/I2, with 0 for a fixed particle
+    or wall.
     """
     return (1.0 + restitution) / (inverse_mass + lever)
 
 
 @inner_helper
 def time_to_plane(x, v, plane):
-    """Return the time at which a coordinate x reaches `plane` (Spencer 2022, Eqs. 10 and 13).
-
-    v : velocity, not 0
+    """Return the time at which a coordinate x reaches `plane` (Spencer 2022, Eqs. 10 and 13). `v`: velocity,
+    not 0.
     """
     return (plane - x) / v
 
@@ -125,9 +123,7 @@ _STEPS = 6  # number of steps of Newton's method to reach rounding errors
 
 @helper
 def fifth_root(value):
-    """Compute the fifth root of a number that is not negative, to 4e-16. Only +, -, x and / are used, so the
-    bits are the same on every machine.
-    """
+    """Compute the fifth root of a number >= 0, to 4e-16, with the same bits on every machine."""
     if not value > 0.0:
         return 0.0
     fraction, exponent = frexp(value)
@@ -150,11 +146,9 @@ def restitution_of(damping):
 
 @inner_helper
 def normal_restitution(approach, radius, mobility, normal, viscous):
-    """Return the normal restitution of a contact, constant or viscoelastic.
-
-    normal : constant restitution, which is returned if `viscous` equals None
-    radius : product of the two radii divided by their sum, or the radius of a particle at a wall
-    mobility : sum of the inverse masses
+    """Return the normal restitution of a contact, constant or viscoelastic. `normal`: constant restitution,
+    which is returned if `viscous` equals None. `radius`: product of the two radii divided by their sum, or
+    the radius of a particle at a wall. `mobility`: sum of the inverse masses.
     """
     if viscous is None:
         return normal
@@ -189,9 +183,7 @@ def _elastic(duration):
 @inner_helper
 def restitution_of_pair(flights, i, j, normal, law, duration):
     """Return the (normal, tangential) restitution of a contact of two particles. The particles have been
-    advanced to the contact.
-
-    normal : restitution from the law alone
+    advanced to the contact. `normal`: restitution from the law alone.
     """
     if duration is not None:
         time = flights[i].clock
@@ -210,9 +202,7 @@ def restitution_of_pair(flights, i, j, normal, law, duration):
 
 @inner_helper
 def restitution_at_wall(flights, i, normal, law, duration):
-    """Return the (normal, tangential) restitution of a contact of a particle and a wall.
-    `restitution_of_pair` explains the arguments.
-    """
+    """Return the (normal, tangential) restitution at a wall; `restitution_of_pair` has the arguments."""
     if duration is not None:
         time = flights[i].clock
         lasts = time - duration.latest[i] < duration.length
@@ -241,7 +231,5 @@ def meet_often(flights, i, j, duration):
 
 @inner_helper
 def is_alone(flights, i, duration):
-    """Return True if a particle has had no contact with another one for the contact duration. The particle
-    has been advanced to the present time.
-    """
+    """Return True if a particle, at the present time, touched none for the contact duration."""
     return flights[i].clock - duration.met[i] >= duration.length

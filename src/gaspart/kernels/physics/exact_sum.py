@@ -97,9 +97,7 @@ def join(parts, total):
 @kernel
 def evaluate(sums, units, values):
     """Set values (K, 2) to the values of sums (K, WIDTH), whose digits are overwritten. A value consists of
-    the nearest float64 and the remainder, with a relative accuracy of 2^-64.
-
-    units : `UNITS`
+    the nearest float64 and the remainder, with a relative accuracy of 2^-64. `units`: `UNITS`.
     """
     for k in range(len(sums)):
         total = sums[k]

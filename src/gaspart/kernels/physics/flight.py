@@ -15,9 +15,7 @@ from gaspart.kernels.physics.contact import time_to_contact
 
 @inner_helper
 def face_plane(flights, i, axis, upper, space):
-    """Return the coordinate at which a face of the container stops the centre of a particle. On a periodic
-    axis the centre crosses the face there.
-    """
+    """Return the coordinate at which a face stops, or a periodic face passes, the centre of a particle."""
     inset = 0.0 if space.periodic[axis] else space.margin * flights[i].radius
     return space.lengths[axis] - inset if upper else inset
 
@@ -104,9 +102,8 @@ def restart_clocks(flights, time, space, gravity):
 @inner_helper
 def encounter(flights, i, j, offset, space, gravity):
     """Return time and invariants of two particles at the later of their clocks. The invariants are the
-    products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and acceleration a.
-
-    offset : (d,), displacement of particle j
+    products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and acceleration a. `offset`:
+    (d,), displacement of particle j.
     """
     start = max(flights[i].clock, flights[j].clock)
     late_i = start - flights[i].clock
@@ -139,9 +136,8 @@ def encounter(flights, i, j, offset, space, gravity):
 
 @inner_helper
 def time_of_contact(flights, i, j, offset, space, gravity):
-    """Return the time at which two particles touch; inf if they do not.
-
-    offset : (d,), displacement of particle j
+    """Return the time at which two particles touch; inf if they do not. `offset`: (d,), displacement of
+    particle j.
     """
     start, rr, rv, vv, ra, va, aa = encounter(flights, i, j, offset, space, gravity)
     sigma = flights[i].radius + flights[j].radius

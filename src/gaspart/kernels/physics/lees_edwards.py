@@ -20,9 +20,7 @@ UPPER_FACE = 2 * GRADIENT + 1
 
 @inner_helper
 def displacement(time, shear):
-    """Return the displacement of the images above at a clock time. The displacement is reduced modulo the
-    length of the container.
-    """
+    """Return the displacement of the images above at a clock time, modulo the container's length."""
     return shear.origin[0] + shear.velocity * time
 
 
@@ -63,9 +61,7 @@ def time_of_sheared_contact(flights, i, j, image, offset, space, shear):
     above (`image` 1) or below (-1), in any of the images along the flow. No image is touched before the
     distance of the centres across the flow equals the contact distance. At that time only the nearest image
     and the next arriving image matter. Either the contact is with one of them, which is still at this
-    distance when it passes, or there is no contact.
-
-    offset : displacement of the image along a third axis
+    distance when it passes, or there is no contact. `offset`: displacement of the image along a third axis.
     """
     start = max(flights[i].clock, flights[j].clock)
     late_i, late_j = start - flights[i].clock, start - flights[j].clock

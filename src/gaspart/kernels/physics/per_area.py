@@ -23,9 +23,7 @@ class PerArea(NamedTuple):
 
 @inner_helper
 def velocity_before(flights, i, per_area):
-    """Return the velocity (3,) of a particle; zeros if nothing is summed. The third component is 0 in two
-    dimensions.
-    """
+    """Return the velocity (3,) of a particle, 0 along a third axis in 2D; zeros if nothing is summed."""
     if per_area is not None:
         velocity = flights[i].velocity
         return velocity[0], velocity[1], velocity[2] if len(velocity) == 3 else 0.0
@@ -53,9 +51,8 @@ def spin_before(i, law, per_area):
 
 @inner_helper
 def add_per_area(flights, i, face, before, model, per_area):
-    """Add the momentum and energy that a face has received from a particle.
-
-    before : velocity of the particle before the hit, and its rotational energy
+    """Add the momentum and energy that a face has received from a particle. `before`: velocity of the
+    particle before the hit, and its rotational energy.
     """
     if per_area is not None:
         (velocity, spin), law = before, model.law

@@ -30,10 +30,7 @@ def _product(a, b):
 @kernel
 def random_words(key, particle, number, block):
     """Return four random words of 64 bits by Philox4x64-10. The generator is by Salmon, Moraes, Dror & Shaw,
-    SC11 (2011).
-
-    key : (2,), words of the seed
-    particle, number, block : counter
+    SC11 (2011). `key`: (2,), words of the seed. `particle` and `number` and `block`: counter.
     """
     c0, c1, c2, c3 = np.uint64(block), np.uint64(number), np.uint64(particle), np.uint64(0)
     k0, k1 = key[0], key[1]
@@ -69,9 +66,7 @@ def log_of(x):
 
 @kernel
 def flux_speed(key, particle, number):
-    """Draw the normal speed of a particle that leaves a wall, in units of sqrt(kT/m). Its probability density
-    is v exp(-v^2/2).
-    """
+    """Draw the normal speed v with density v exp(-v^2/2) of a particle that leaves a wall, in sqrt(kT/m)."""
     random_bits, _, _, _ = random_words(key, particle, number, 0)
     return sqrt(-2.0 * log_of(uniform(random_bits)))
 
@@ -79,9 +74,7 @@ def flux_speed(key, particle, number):
 @kernel
 def normal_pair(key, particle, number, block):
     """Draw two standard normal numbers by Marsaglia's polar method. Also returns the first unused block of
-    random words.
-
-    block : first block to use, at least 1, because `flux_speed` uses block 0
+    random words. `block`: first block to use, at least 1, because `flux_speed` uses block 0.
     """
     while True:
         words = random_words(key, particle, number, block)

@@ -32,10 +32,8 @@ def add(sums, n, x):
 @inner_helper
 def add_whole(sum_, x, largest):
     """Add x to a sum (2,) of integers, which count a coarse and a fine unit. The fine unit counts the
-    remainder.
-
-    largest : power of two that few terms exceed. So all operations except rint are exact, and the quotient is
-        the same for all terms
+    remainder. `largest`: power of two that few terms exceed. So all operations except rint are exact, and the
+    quotient is the same for all terms.
     """
     units = x * (1.0 / largest / _COARSE)
     coarse = np.rint(units)

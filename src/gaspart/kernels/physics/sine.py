@@ -24,9 +24,7 @@ Within an eighth of a turn around 0 the truncation error is below 1e-16.
 
 @helper
 def sine_cosine(turns):
-    """Compute sin and cos of 2 pi turns, with an error of at most 3e-16. The series is evaluated relative to
-    the nearest quarter of a turn.
-    """
+    """Compute sin and cos of 2 pi turns, to 3e-16, relative to the nearest quarter of a turn."""
     quarter = floor(4.0 * turns + 0.5)
     x = TURN * (turns - 0.25 * quarter)
     square = x * x

@@ -35,9 +35,8 @@ from gaspart.kernels.step.model import LOSS, VIRIAL
 @inner_helper
 def place_and_speed(particles, slot, ago, tally, impulses):
     """Return the past position of a particle, and its velocity at the end of the step. The position is on its
-    present flight. Both are along the axis of the impulses. They are 0 if no impulses are tallied.
-
-    ago : time relative to the end of the step, negative
+    present flight. Both are along the axis of the impulses. They are 0 if no impulses are tallied. `ago`:
+    time relative to the end of the step, negative.
     """
     if impulses is not None:
         v = np.float64(particles.velocities[tally.axis, slot])
@@ -63,10 +62,7 @@ def add_impulse(particles, slot, position, change, tally, thread, impulses):
 
 @inner_helper
 def add_contact(particles, slot, before, tally, impulses):
-    """Add the impulse of a contact.
-
-    before : result of `place_and_speed` before the contact
-    """
+    """Add the impulse of a contact. `before`: result of `place_and_speed` before the contact."""
     if impulses is not None:
         position, speed = before
         change = particles.velocities[tally.axis, slot] - speed
@@ -75,10 +71,7 @@ def add_contact(particles, slot, before, tally, impulses):
 
 @inner_helper
 def add_reflection(particles, slot, axis, at, tally, thread, impulses):
-    """Add the impulse of a face across an axis.
-
-    at : position of the face, and change of the velocity
-    """
+    """Add the impulse of a face across an axis. `at`: position of the face, and change of the velocity."""
     if impulses is not None:
         if axis == tally.axis:
             position, change = np.float64(at[0]), np.float64(at[1])
@@ -130,9 +123,7 @@ def is_free(particles, slot, rules):
 
 @inner_kernel
 def gather(particles, slot, rules):
-    """Write the particle in a slot into its flight, with the clock at 0. Returns the number of the
-    particle.
-    """
+    """Write the particle in a slot into its flight, with the clock at 0; return its number."""
     flights, i = rules.flights, np.int64(particles.index[slot])
     for k in range(particles.positions.shape[0]):
         flights[i].position[k] = particles.positions[k, slot]
@@ -158,7 +149,6 @@ def scatter(particles, slot, rules):
 def crossing_time(flights, i, axis, space, faces):
     """Return when a particle crossed a face or the edge of a well: (time, face code). The crossing is along
     an axis, on the present flight, before the end of the step. Without a crossing the result is (inf, NONE).
-    A particle that is stuck to a face but moves has left its plane at this time, when its release is decided.
     """
     v = flights[i].velocity[axis]
     if v == 0.0:
@@ -199,9 +189,7 @@ def crossing_time_pulled(flights, i, axis, pull, space, dt):
 
 @inner_kernel
 def first_crossing(flights, i, space, dt, faces, gravity):
-    """Return the first of all faces and edges that a particle crossed: (time, face code). See
-    `crossing_time`.
-    """
+    """Return the first of all faces and edges that a particle crossed, as `crossing_time`."""
     first, face = inf, NONE
     for k in range(len(space.lengths)):
         if not space.periodic[k]:
@@ -248,9 +236,8 @@ def speed_at_face(flights, i, tally, impulses):
 
 @inner_helper
 def add_impulse_of_face(particles, slot, before, rules, tally, impulses):
-    """Add the impulse of a face at the present position of a particle.
-
-    before : velocity of the particle before it hit the face
+    """Add the impulse of a face at the present position of a particle. `before`: velocity of the particle
+    before it hit the face.
     """
     if impulses is not None:
         flight = rules.flights[particles.index[slot]]
@@ -289,9 +276,8 @@ def meet_faces(particles, slot, rules, dt, tally, law):
 @inner_kernel
 def collide_flights(particles, i, j, contact, rules, tally, law):
     """Apply the collision law to the particles in two slots; return both squared speeds. All particles have
-    the same acceleration, so they move uniformly relative to each other.
-
-    contact : time of the contact, negative, and the invariants rr, rv at this time
+    the same acceleration, so they move uniformly relative to each other. `contact`: time of the contact,
+    negative, and the invariants rr, rv at this time.
     """
     ago, rr, rv = contact
     flights, space = rules.flights, rules.model.space

@@ -62,9 +62,8 @@ def sort_in(particles, boxes):
 @inner_helper
 def gap_squared(particles, slot, boxes, axis, offset, periodic):
     """Return the squared distance between a particle and the slab of a box along an axis. The second of two
-    boxes along a periodic axis is on both sides of the first.
-
-    offset : position of the box relative to the particle's box (-1, 0, 1)
+    boxes along a periodic axis is on both sides of the first. `offset`: position of the box relative to the
+    particle's box (-1, 0, 1).
     """
     x = particles.positions[axis, slot]
     width = boxes.widths[axis]
@@ -217,10 +216,8 @@ def find_contacts(particles, search, space, step, overlaps, tally, threads):
 @allocating_kernel
 def run_steps(particles, search, model, settings, steps, tally, threads):
     """Perform a number of steps; for zero steps, only renew an outdated neighbour list. Returns the present
-    pairs of the list.
-
-    settings : length of the steps, True to rewind contacts, and the maximum number of passes
-    threads : number of threads, or None for one thread
+    pairs of the list. `settings`: length of the steps, True to rewind contacts, and the maximum number of
+    passes. `threads`: number of threads, or None for one thread.
     """
     boxes, cells, pairs = search
     space, rules, law = model.space, model.rules, model.law

@@ -118,9 +118,7 @@ class Overlaps(NamedTuple):
 
 @inner_helper
 def part_of(part, parts, count):
-    """Return the first and the last index (exclusive) of an equal slice. `count` items are divided into
-    `parts` slices.
-    """
+    """Return the first and the last index (exclusive) of an equal slice of `count` items in `parts`."""
     return part * count // parts, (part + 1) * count // parts
 
 
@@ -177,9 +175,8 @@ def locate_part(particles, part, cells):
 @inner_kernel
 def divide_cells(cells, ordinary, shares):
     """Divide the cells among threads so that each has about the same number of particles. The particle
-    numbers of the last sort are used.
-
-    shares : (threads + 1,), cells shares[n] to shares[n + 1] belong to thread n
+    numbers of the last sort are used. `shares`: (threads + 1,), cells shares[n] to shares[n + 1] belong to
+    thread n.
     """
     threads = len(cells.listed)
     shares[0], shares[threads] = 0, len(cells.ends)

@@ -33,10 +33,7 @@ def wrap(particles, slot, axis, length):
 
 @inner_helper
 def reflect(particles, slot, axis, planes, model, tally, thread):
-    """Reflect a particle that left through a wall, as long as it moves outwards.
-
-    planes : (lower, upper)
-    """
+    """Reflect a particle that left through a wall, as long as it moves outwards. `planes`: (lower, upper)."""
     lower, upper = planes
     x = particles.positions[axis, slot]
     v = particles.velocities[axis, slot]
@@ -179,9 +176,7 @@ def fly(x, v, lower, upper, dt):
 
 @inner_kernel
 def fall(x, v, pull, lower, upper, dt):
-    """Move particles along one axis, exactly along the parabola of an acceleration. Returns the number of
-    particles outside [lower, upper).
-    """
+    """Move particles along one axis, along exact parabolas; return the number outside [lower, upper)."""
     outside = 0
     gain = pull * dt
     drop = dt / (dt + dt) * gain * dt
@@ -285,9 +280,8 @@ def fastest_part(particles, slots):
 
 @inner_allocating_kernel
 def displacement_part(particles, slots, cells, space):
-    """Return the largest squared displacement of some slots since the neighbour list was made.
-
-    slots : first slot, and the end of the slots
+    """Return the largest squared displacement of some slots since the neighbour list was made. `slots`: first
+    slot, and the end of the slots.
     """
     room = np.empty(_BLOCK, particles.positions.dtype)
     most = space.margin - space.margin

@@ -42,10 +42,7 @@ def roomy(shape: tuple[int, ...], dtype: DTypeLike) -> np.ndarray:
 
 
 def _call(builder: ir.IRBuilder, name: str, kind: ir.Type, *arguments: ir.Value) -> ir.Value:
-    """Return the result of an LLVM instruction, by its name.
-
-    kind : type of the result
-    """
+    """Return the result of an LLVM instruction, by its name. `kind`: type of the result."""
     function = ir.FunctionType(kind, [argument.type for argument in arguments])
     return builder.call(cgutils.get_or_insert_function(builder.module, function, name), arguments)
 
@@ -97,9 +94,7 @@ def nearer(typingctx, positions, radii, space, slot, skin, first):
 
 @intrinsic
 def equals(typingctx, values, first, value):
-    """Return a bit for each of eight elements that equals a value. The lowest bit belongs to the element
-    `first`.
-    """
+    """Return a bit, lowest for `first`, for each of eight elements that equals a value."""
 
     def generate(context, builder, signature, arguments):
         values, first, value = arguments
@@ -116,8 +111,8 @@ def equals(typingctx, values, first, value):
 
 @intrinsic
 def compact_eight(typingctx, words, first, least, kept, number):
-    """Write the words, out of eight, that are at least `least` into `kept`. Returns their number. The eight
-    words begin at index `first`. Writing begins at index `number`. There must be space for eight words.
+    """Write the words of eight from `first` that are at least `least` into `kept` from `number`; return their
+    number.
     """
 
     def generate(context, builder, signature, arguments):
@@ -157,10 +152,8 @@ _SLOTS = (ONE << _PLACE) - ONE
 
 @inner_kernel
 def compact(entries, number, pairs, listed):
-    """Write the entries with a set bit into pairs (room,), as long as there is space.
-
-    number : number of entries
-    listed : number of entries in `pairs` so far; the new number is returned
+    """Write the entries with a set bit into pairs (room,), as long as there is space. `number`: number of
+    entries. `listed`: number of entries in `pairs` so far; the new number is returned.
     """
     most = np.uint64(len(pairs)) - _EIGHT
     for n in range(WIDTH):
@@ -173,9 +166,8 @@ def compact(entries, number, pairs, listed):
 @inner_helper
 def record_near(particles, slot, others, cells, space, entries, pairs, filled):
     """Record the slots from others[0] to others[1] that are near a slot, eight per entry. A slot is near if
-    its distance is below the contact distance plus the skin.
-
-    filled : numbers of entries, and of entries in the list; the new numbers are returned
+    its distance is below the contact distance plus the skin. `filled`: numbers of entries, and of entries in
+    the list; the new numbers are returned.
     """
     number, listed = filled
     first, last = np.uint64(others[0]), np.uint64(others[1])
@@ -194,9 +186,7 @@ def record_near(particles, slot, others, cells, space, entries, pairs, filled):
 
 @inner_helper
 def rows_ahead(dimension):
-    """Return the number of rows of cells with which the particles of a row are paired. These are the row
-    itself, and the next rows along the other axes.
-    """
+    """Return the number of rows of cells, its own first, with which the particles of a row are paired."""
     return 5 if dimension == 3 else 2
 
 
@@ -291,9 +281,7 @@ def list_part(particles, part, cells, pairs, space, tests):
 
 @inner_kernel
 def is_complete(particles, cells):
-    """Return True if no pair can have approached by more than the skin. The reference is the time at which
-    the list was made.
-    """
+    """Return True if no pair can have approached by more than the skin since the list was made."""
     return 2.0 * particles.bounds[DISPLACEMENT] < _SAFE * cells.skin
 
 

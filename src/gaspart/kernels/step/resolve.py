@@ -37,8 +37,8 @@ _LATE = 1.125  # time in steps; earlier contacts belong to an earlier step, for 
 
 @inner_helper
 def distance_squared(particles, i, j, space):
-    """Return the squared distance of two slots, for the nearest image. The bits are the same as in
-    `invariants`, but there is no branch.
+    """Return the squared distance of two slots, nearest image, with the bits of `invariants` but no
+    branch.
     """
     rr = space.margin - space.margin
     for k in range(len(space.lengths)):
@@ -99,9 +99,7 @@ def examine(particles, i, j, space, step, overlaps, thread):
 
 @inner_helper
 def earlier(index, pairs, times, m, n):
-    """Return True if contact m is resolved before contact n. The order is by time, then lower index, then
-    higher index.
-    """
+    """Return True if contact m comes before contact n: by time, lower index, higher index."""
     if times[m] != times[n]:
         return times[m] < times[n]
     low_m, low_n = index[pairs[m, 0]], index[pairs[n, 0]]
@@ -110,9 +108,7 @@ def earlier(index, pairs, times, m, n):
 
 @inner_allocating_kernel
 def spread(times):
-    """Sort contacts into equal intervals of time, as many as there are contacts. The result is nearly sorted
-    by time.
-    """
+    """Sort contacts into as many equal intervals of time, which sorts them nearly by time."""
     number = len(times)
     first, last = times.min(), times.max()
     scale = (number - 1) / np.float64(last - first) if last > first else 0.0
@@ -199,9 +195,7 @@ def impulse_factors(rr, rv, mass1, mass2):
 
 @inner_helper
 def record_contact(particles, slot, speed_squared, space, step, tally, cells):
-    """Record a contact of a particle, and update all bounds. It is counted if it is not the first contact of
-    the particle in this step.
-    """
+    """Record a contact of a particle and all bounds; count it if it is not the first in this step."""
     tally.counts[MULTIPLE] += particles.last_pass[slot] >= step.first
     particles.last_pass[slot] = step.number
     raise_bounds(particles, slot, speed_squared, space, cells)
@@ -209,9 +203,8 @@ def record_contact(particles, slot, speed_squared, space, step, tally, cells):
 
 @inner_helper
 def collide_smooth(particles, i, j, contact, model, tally):
-    """Apply a collision to two smooth particles; return both squared speeds.
-
-    contact : time of the contact, negative, and the invariants rr, rv at this time
+    """Apply a collision to two smooth particles; return both squared speeds. `contact`: time of the contact,
+    negative, and the invariants rr, rv at this time.
     """
     ago, rr, rv = contact
     space = model.space

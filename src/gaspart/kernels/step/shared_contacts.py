@@ -125,10 +125,7 @@ def resolve_part(particles, part, contacts, model, step, tally, cells):
 
 @inner_parallel_kernel
 def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, cells):
-    """Perform `resolve_part` for all parts.
-
-    numbers : numbers of the model, and the margin of its space
-    """
+    """Perform `resolve_part` for all parts. `numbers`: numbers of the model, and the margin of its space."""
     for part in prange(len(cells.listed)):
         normal, impulse_share, inset, margin = numbers
         model = StepModel(Space(lengths, periodic, margin), normal, impulse_share, inset, None, None, None)
@@ -137,10 +134,7 @@ def resolve_parts(particles, contacts, lengths, periodic, numbers, step, tally, 
 
 @inner_allocating_kernel
 def resolve_shared(particles, ordered_pairs, model, step, tally, cells):
-    """Perform `resolve_all` with several threads.
-
-    ordered_pairs : pairs and their order
-    """
+    """Perform `resolve_all` with several threads. `ordered_pairs`: pairs and their order."""
     (pairs, order), threads, space = ordered_pairs, len(cells.listed), model.space
     contacts = Contacts(
         pairs,

@@ -51,10 +51,7 @@ def room_for(threads, room, like):
 
 @inner_parallel_kernel
 def move_shared(particles, lengths, periodic, numbers, dt, tally, threads, gravity):
-    """Perform `move` for all slots.
-
-    numbers : numbers of the model, and the margin of its space
-    """
+    """Perform `move` for all slots. `numbers`: numbers of the model, and the margin of its space."""
     count = particles.positions.shape[1]
     for part in prange(threads):
         normal, impulse_share, inset, margin = numbers
@@ -214,9 +211,7 @@ def measure_displacement(particles, cells, space, threads):
 
 @inner_allocating_kernel
 def is_outdated(particles, cells, space, threads):
-    """Return True if the neighbour list must be renewed. First the bound on the displacement of the fastest
-    particle is tested. If it is too large, the displacements of all particles are measured.
-    """
+    """Return True if the list must be renewed: by the fastest particle's bound, else by displacements."""
     if is_complete(particles, cells):
         return False
     if particles.bounds[DISPLACEMENT] < np.inf:

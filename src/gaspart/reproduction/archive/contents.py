@@ -15,12 +15,11 @@ from gaspart.errors import SceneError
 from gaspart.files import resolve_path
 from gaspart.reproduction.claims import table
 from gaspart.reproduction.claims.table import fill_caption
-from gaspart.reproduction.config import check, is_own, merged_with_default
-from gaspart.reproduction.jobs.simulate import recipes
+from gaspart.reproduction.config import check, is_own, keep_efforts, merged_with_default
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 from gaspart.reproduction.points.points import figure_points
+from gaspart.reproduction.points.trust import require_own
 from gaspart.reproduction.registry import caption
-from gaspart.trajectory.recipe import read_recipe
 from gaspart.yaml_text import read_yaml
 
 
@@ -130,6 +129,7 @@ def find_finished(results: str | Path, config: str | Path | None = None) -> Fini
         raise SceneError("run", merged.get("run"), f"must be {name or 'absent'}, as {results} is", str(file))
     prefix = parent.relative_to(root)
     inside = [str(path.relative_to(root)) for path in files if path.is_relative_to(root)]
+    keep_efforts(merged, parent / str(merged.get("points")))
     with chdir(root):  # folder from which scene files are read
         points = _select_points(merged, check(merged, files))
         points = [replace(point, root=str(prefix / point.root)) for point in points]
@@ -189,11 +189,7 @@ def _check(run: Finished, file: Path, results: str | Path) -> None:
         rule = f"is not complete: {missing[0]}{others}; run the workflow to its end"
         raise SceneError("results", str(results), rule)
     for point in run.points:
-        if point.job == TRAJECTORIES:
-            for path, recipe in zip(point.replica_paths, recipes(**point.arguments), strict=True):
-                if read_recipe(run.root / path) != recipe:
-                    rule = "was made with other settings than those of the config; run the workflow again"
-                    raise SceneError("trajectory", path, rule)
+        require_own(point)
 
 
 CITATION = "CITATION.cff"

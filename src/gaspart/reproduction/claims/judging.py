@@ -129,11 +129,9 @@ class Claim:
         """Return the claim that chi-square per degree of freedom is 1. The deviation of the claim is the
         deviation of a Gaussian number with equal two-sided probability. It is two-sided because a chi-square
         that is far too small is also an error: the error bars are too large. The uncertainty sqrt(2 / dof) is
-        the scatter of the statistic itself.
-
-        error_freedom : degrees of freedom of a common uncertainty of all deviations, if it was computed from
-            a few samples. The statistic per degree of freedom then follows Fisher's distribution.
-        others : the remaining fields of the claim.
+        the scatter of the statistic itself. `error_freedom`: degrees of freedom of a common uncertainty of
+        all deviations, if it was computed from a few samples. The statistic per degree of freedom then
+        follows Fisher's distribution. `others`: the remaining fields of the claim.
         """
         from scipy.special import chdtr, chdtrc, fdtr, fdtrc, ndtri
 

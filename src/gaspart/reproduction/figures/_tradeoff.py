@@ -33,7 +33,7 @@ from gaspart.reproduction.figures._timings import median
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row
 from gaspart.scene.container import Container
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.theory import bulk

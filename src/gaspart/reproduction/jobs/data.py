@@ -20,9 +20,25 @@ MADE_BY = "made_by"
 """Attribute of a data set of a point: the digest of the arguments of its job."""
 
 
+def kept_path(path: Path) -> Path:
+    """Return where the output of a point is kept, for a job that makes it again or longer."""
+    return path.parents[1] / ".kept" / path.parent.name / path.name
+
+
 def digest_of(parameters: dict[str, Any]) -> str:
     """Return the digest of the arguments of a job, as plain values."""
     return hashlib.sha256(json.dumps(parameters, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def made_by(path: str | Path) -> str:
+    """Return the digest of the arguments that made the data set of a point, or "".
+
+    May raise OSError.
+    """
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        return str(getattr(file, MADE_BY, ""))
 
 
 class PointData(NamedTuple):

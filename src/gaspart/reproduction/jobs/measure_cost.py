@@ -136,23 +136,20 @@ def measure_cost(
     extras: Mapping[str, Any] = _NONE,
     rival: dict[str, Any] | None = None,
 ) -> PointData:
-    """Time an interval of a gas `samples` times, with each of the engines.
-
-    equilibration, interval : times in the scene's unit.
-    extras : a selection of `EXTRAS`, with their values.
-    rival : another `scene` and `engines`, timed alternately with these and without extras; they are the last
-        partitions. Engines without a time step use the scene's default.
-
-    Returns a dataset over ``partition`` (the engines, in their order) and ``repeat``. ``seconds`` and
-    ``wall_seconds`` (partition, repeat) are times of the advance alone: CPU time of all threads, and
-    wall-clock time. Times for filling the container, setup and compilation are left out. Over ``partition``
-    are the number of ``cores`` in use, the total number of ``boxes``, ``boxes_per_side`` (of the first axis;
-    both are 0 if the engine chooses them), ``duration`` (in the scene's time), the counts of the tally, and
-    ``bits``, a digest of the final state and of the sums over collisions. Attributes are count, dimension,
-    radius, side (first axis), packing_fraction, engine, search (event-driven), model (DSMC) or time_step,
-    extras, and cores, the number that kernels may use on this machine. If a run needs more cores than this,
-    all engines run once, for their counts and bits, and all times are NaN. Raises SceneError. Raises
-    SimulationError if the counts or the bits of a repeat or a copy differ from the first run.
+    """Time an interval of a gas `samples` times, with each of the engines. `equilibration` and `interval`:
+    times in the scene's unit. `extras`: a selection of `EXTRAS`, with their values. `rival`: another `scene`
+    and `engines`, timed alternately with these and without extras; they are the last partitions. Engines
+    without a time step use the scene's default. Returns a dataset over ``partition`` (the engines, in their
+    order) and ``repeat``. ``seconds`` and ``wall_seconds`` (partition, repeat) are times of the advance
+    alone: CPU time of all threads, and wall-clock time. Times for filling the container, setup and
+    compilation are left out. Over ``partition`` are the number of ``cores`` in use, the total number of
+    ``boxes``, ``boxes_per_side`` (of the first axis; both are 0 if the engine chooses them), ``duration`` (in
+    the scene's time), the counts of the tally, and ``bits``, a digest of the final state and of the sums over
+    collisions. Attributes are count, dimension, radius, side (first axis), packing_fraction, engine, search
+    (event-driven), model (DSMC) or time_step, extras, and cores, the number that kernels may use on this
+    machine. If a run needs more cores than this, all engines run once, for their counts and bits, and all
+    times are NaN. Raises SceneError. Raises SimulationError if the counts or the bits of a repeat or a copy
+    differ from the first run.
     """
     from numba import config
 

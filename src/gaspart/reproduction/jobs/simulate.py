@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gaspart.errors import SceneError
 from gaspart.keys import Kind, count, describe, flag, positive
-from gaspart.reproduction.jobs.data import DIVIDED, EQUILIBRATION_KEY
+from gaspart.reproduction.jobs.data import DIVIDED, EQUILIBRATION_KEY, kept_path
 from gaspart.reproduction.jobs.replicas import write_replicas
 from gaspart.trajectory.run_options import OPTIONS, contents_of, recipe_fields
 
@@ -115,9 +115,11 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`. The other arguments are passed to `recipes`."""
-    kept = folder.parents[1] / ".kept" / folder.parent.name / folder.name
-    write_replicas(record, recipes(**arguments), folder, print, kept=kept)
+    """Write a trajectory for each seed; see `write_replicas`.
+
+    The other arguments are passed to `recipes`.
+    """
+    write_replicas(record, recipes(**arguments), folder, print, kept=kept_path(folder))
 
 
 def record(recipe: Recipe, path: Path, overwrite: bool, progress: Progress | None = None) -> None:

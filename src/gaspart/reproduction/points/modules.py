@@ -18,6 +18,7 @@ from pathlib import Path
 
 from gaspart.kernels.compile.sources import file_digests, tree_digest
 from gaspart.public import read_stub
+from gaspart.reproduction.points.point import TRAJECTORIES, Point, variant
 
 PACKAGE = Path(__file__).parents[2]
 _TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
@@ -155,6 +156,22 @@ def kernel_digest(*roots: str | Path) -> str:
     """
     modules = closure(*roots) & closure("gaspart.reproduction.points.point")
     return _digest_of([path for path in _in_order(modules) if path.is_relative_to(PACKAGE / "kernels")])
+
+
+def stage_sources(scripts: Path, stage: str) -> list[Path]:
+    """Return the scripts of a stage of the workflow, which import the modules that it uses."""
+    return [scripts / "_job.py", scripts / f"{stage}.py"]
+
+
+def point_sources(point: Point, scripts: Path) -> list[str | Path]:
+    """Return the script that does the job of a point, and the modules that it imports by name."""
+    stage = "simulate" if point.job == TRAJECTORIES else "compute"
+    return [*stage_sources(scripts, stage), *point.modules]
+
+
+def stamp(point: Point, scripts: Path) -> str:
+    """Return the path of the file that exists if the kernels of a point have been compiled."""
+    return f"results/kernels/{kernel_digest(*point_sources(point, scripts))}/{variant(point)}.compiled"
 
 
 def _in_order(paths: frozenset[Path]) -> list[Path]:

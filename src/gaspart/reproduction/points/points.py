@@ -46,17 +46,20 @@ _OF_SEEDS = ("echo", "fill", "pack")
 def scale_length(
     job: str, settings: Mapping[str, Any], multiple: float, least: int = _LEAST_SAMPLES
 ) -> dict[str, Any]:
-    """Return the settings with `multiple` times as many replicas, and then longer runs. The intervals between
-    samples are kept, so that a run of less effort is the beginning of one of more. It has at least `least`
-    samples, and twice as many as lags, unless there are fewer at effort 1. If a run does not begin with an
-    equilibration, its length is not changed, because it describes a process in time.
+    """Return the settings with `multiple` times as many replicas, and then longer runs.
+
+    The intervals between samples are kept, so that a run of less effort is the beginning of one of more. It
+    has at least `least` samples, and twice as many as lags, unless there are fewer at effort 1. The length of
+    two kinds of runs is not changed: those without equilibration, which describe a process in time, and those
+    with displacements but no lags, whose figures follow paths to their end.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)
     if replicas > 1 and job in ("simulate", *_OF_SEEDS):
         result["replicas"] = max(math.ceil(replicas * multiple - 1e-9), min(replicas, _LEAST_REPLICAS))
         multiple *= replicas / result["replicas"]
-    if job in _OF_SEEDS or (job == "simulate" and not result.get("equilibration")) or "until" in result:
+    in_time = not result.get("equilibration") or (result.get("displacements") and "lags" not in result)
+    if job in _OF_SEEDS or (job == "simulate" and in_time) or "until" in result:
         return result
     samples = result.get("samples", 1)
     each = samples // result["frames"] if "frames" in result else 1  # samples per frame

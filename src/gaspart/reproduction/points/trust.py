@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.jobs.data import MADE_BY, digest_of
+from gaspart.reproduction.jobs.data import digest_of, made_by
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
 
 
@@ -17,11 +17,7 @@ def require_own(point: Point) -> None:
         read = import_module("gaspart.trajectory.recipe").read_recipe
         other = [path for path, one in zip(point.replica_paths, recipes, strict=True) if read(path) != one]
     else:
-        import netCDF4
-
-        with netCDF4.Dataset(point.path) as file:
-            made_by = getattr(file, MADE_BY, "")
-        other = [point.path] if made_by != digest_of(point.parameters) else []
+        other = [point.path] if made_by(point.path) != digest_of(point.parameters) else []
     if other:
         name = f"{point.experiment}/{point.name}"
         rule = f"was not made by the point {name} of this config: delete {point.path}"

@@ -196,9 +196,8 @@ def cited_references(texts: Iterable[str], references: Mapping[str, Reference]) 
 
 
 def split_citations(text: str, references: Mapping[str, Reference]) -> Iterator[tuple[str, Reference | None]]:
-    """Yield the parts of a text, with the reference that is cited at the end of a part.
-
-    The names of authors take the place of the key in brackets.
+    """Yield the parts of a text, with the reference that is cited at the end of a part. The names of authors
+    take the place of the key in brackets.
     """
     start = 0
     for citation in CITATION.finditer(text):

@@ -344,13 +344,6 @@ def address(path: Path, one_file: bool = False) -> str:
     return f"{path.parent.name}/{path.name}"
 
 
-def films(paths: list[Path], one_file: bool) -> dict[str, str]:
-    """Return name and address of each film that the page shows. A page in one file has only the first film,
-    because all films together are larger than the rest.
-    """
-    return {path.stem: address(path, one_file) for path in (paths[:1] if one_file else paths)}
-
-
 def _data(kind: str, content: bytes) -> str:
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 

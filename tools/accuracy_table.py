@@ -1,6 +1,6 @@
 """Writer of the table `data/accuracy.csv` from measurements of the workflow.
 
-    python -m gaspart.accuracy.fit results/measurements > src/gaspart/accuracy/data/accuracy.csv
+    python tools/accuracy_table.py results/measurements > src/gaspart/accuracy/data/accuracy.csv
 
 The writer reads the following files from a folder: speed_accuracy.nc (errors and times of the engines),
 virial_spheres.nc and virial_discs.nc (noise of Z and of the collision rate), msd_spheres.nc (noise of D) and
@@ -104,9 +104,7 @@ def _noise(virial: xr.Dataset, dimension: int) -> Iterator[dict]:
 
 
 def _diffusion(msd: xr.Dataset) -> Iterator[dict]:
-    """Yield the relative variance of D of spheres, multiplied by the number of contacts. The result is the
-    median over all gases, because each gas has few replicas.
-    """
+    """Yield the relative variance of D of spheres times contacts: the median over gases of few replicas."""
     length = msd.time.max("lag") * 2.0 * msd.collision_rate  # lags extend to half of the run
     contacts = 0.5 * msd["count"] * length * msd.replicas
     values = ((msd.diffusion_error / msd.diffusion) ** 2 * contacts).values
@@ -128,7 +126,7 @@ def main(folder: str) -> None:
     """Write the table to standard output."""
     revision = provenance.git_revision()
     print(
-        "# What accuracy costs; columns in gaspart/accuracy/table.py. Made by python -m gaspart.accuracy.fit"
+        "# What accuracy costs; columns in gaspart/accuracy/table.py. Made by python tools/accuracy_table.py"
     )
     print(f"# from the full reproduction, revision {revision}. Times are of the machine that it ran on.")
     writer = csv.DictWriter(sys.stdout, COLUMNS, lineterminator="\n")

@@ -1,6 +1,6 @@
 """Relaxation of equal speeds to Maxwell's distribution, by the DSMC engine.
 
-    python -m gaspart.reproduction.relaxation 3 1000000 60 > table.csv
+    python tools/relaxation.py 3 1000000 60 > table.csv
 
 computes the numbers of `theory/data/relaxation_3d.csv`. The arguments are the dimension, the number of
 particles in a run, and the number of runs. The gas is homogeneous, so that neither cells nor steps matter:
