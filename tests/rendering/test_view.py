@@ -207,6 +207,7 @@ def test_faces_have_the_looks_of_pictures_where_they_are(faces):
         assert {corner[0] for corner in hot["corners"]} == {14.0}
 
 
+@pytest.mark.thorough
 @needs_chromium
 @pytest.mark.parametrize("width", [1400, 390])
 def test_the_page_draws_faces_and_names_them(faces, pages, width):
