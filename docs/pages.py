@@ -243,7 +243,7 @@ def sources():
     references = read_yaml(ROOT / "workflow/report/references.yaml")
     for document in read_yaml(ROOT / "workflow/report/sources.yaml"):
         about = references[document["source"]]
-        text += heading(document["source"].capitalize(), "-")
+        text += heading(document["source"].replace("source", "Source"), "-")
         text += f"{' & '.join(about['authors'])}, {about['where']}\n\n"
         rows = []
         for entry in document["statements"]:
@@ -253,7 +253,7 @@ def sources():
             why = fill_caption(entry["why"], read(claims) if claims.exists() else [], "(see the claims)")
             cells = {key: " ".join(entry[key].split()) for key in ("at", "says", "verdict")}
             rows.append({**cells, "why": " ".join(why.split()) + link})
-        columns = {"place": "{at}", "statement": "{says}", "verdict": "{verdict}", "evidence": "{why}"}
+        columns = {"statement": "{says} *{at}*", "verdict": "**{verdict}.** {why}"}
         text += table(columns, rows)
     return {"sources.rst": text}
 

@@ -37,21 +37,24 @@ class _Handler(SimpleHTTPRequestHandler):
         pass
 
 
-def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240):
+def found_in(browser, page, script, folder, width=1400, height=1000, seconds=240, fragment=""):
     """What the body of an asynchronous function of JavaScript returns on a page, and lines of its console."""
     text = page.read_text(encoding="utf-8").replace("<head>", f"<head>{_HEAD}", 1)
     text = "".join(text.rpartition("</body>")[:1]) + _TAIL.replace("SCRIPT", script) + "</html>"
     (folder / "driven.html").write_text(text, encoding="utf-8")
+    # windows have a smallest width, and Firefox ignores the size
+    frame = f'<iframe src="driven.html{fragment}" style="border: 0; width: {width}px; height: {height}px">'
+    (folder / "frame.html").write_text(f"<!doctype html><body style='margin: 0'>{frame}", encoding="utf-8")
     handler = type("Handler", (_Handler,), {"found": queue.Queue()})
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    address = f"http://127.0.0.1:{server.server_port}/driven.html"
+    address = f"http://127.0.0.1:{server.server_port}/frame.html"
     profile = folder / f"profile-{browser.rpartition('/')[2]}"
     profile.mkdir(exist_ok=True)
     size = f"--window-size={width},{height}"
     command = [browser, *_CHROMIUM_OPTIONS, f"--user-data-dir={profile}", size, address]
     if "firefox" in browser:
-        command = [browser, "--headless", "--no-remote", "--profile", str(profile), size, address]
+        command = [browser, "--headless", "--no-remote", "--profile", str(profile), address]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         result = handler.found.get(timeout=seconds)

@@ -4,6 +4,7 @@ import gc
 import os
 import signal
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -38,8 +39,8 @@ if INTERPRETED:
     read_fields()
     do_without_vectors()
 
-OF_CANONICAL_KERNELS = ("battery", "cli", "exact")
-"""Folders whose unmarked tests use the loops of `battery.compile_kernels` alone."""
+OF_CANONICAL_KERNELS = ("battery", "engines", "exact", "kernels", "scene", "state")
+"""Folders whose unmarked tests may use the loops of `battery.compile_kernels` alone; others are warned."""
 LOOPS_BEFORE = set()
 """Digests of the engines' loops that earlier tests of this process have used."""
 TESTS = Path(__file__).parent
@@ -96,11 +97,11 @@ def only_canonical_kernels(request):
         new = loops_in_use() - LOOPS_BEFORE
         LOOPS_BEFORE.update(new)
         marks = {mark.name for mark in request.node.iter_markers()}
-        if place_of(request.node)[0] in OF_CANONICAL_KERNELS and not {"thorough", "interpreted"} & marks:
-            own = new - set(LIST.read_text().split())
-            assert not own, (
-                "a scene with kernels of its own: take one of battery/kinds_of_runs.py, or mark it thorough"
-            )
+        if not {"thorough", "interpreted"} & marks and new - set(LIST.read_text().split()):
+            message = "kernels of its own: take a scene of battery/compile_kernels.py, or mark it thorough"
+            if place_of(request.node)[0] in OF_CANONICAL_KERNELS:
+                pytest.fail(message)
+            warnings.warn(message, stacklevel=1)
 
 
 def pytest_xdist_make_scheduler(config, log):

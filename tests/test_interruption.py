@@ -19,7 +19,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.interruption import SIGNALS, defer_signals
 from gaspart.trajectory import recording
-from gaspart.trajectory.checkpoint import checkpoint_path
+from gaspart.trajectory.opening import checkpoint_path
 
 SCENE = gas(3, 200, 0.2)
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}

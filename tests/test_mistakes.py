@@ -203,6 +203,7 @@ def test_a_run_in_the_file_of_another_states_the_difference(tmp_path):
     assert path.read_bytes() == before
 
 
+@pytest.mark.interpreted
 def test_speeds_of_an_open_gas_are_not_defined():
     faces = {"x_low": gp.Open(), "x_high": gp.Open(activity=0.1, temperature=1.0)}
     scene = gp.Scene(gp.Container((9.0, 9.0)), GAS, faces=faces, centres_to_walls=True)

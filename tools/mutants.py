@@ -34,10 +34,16 @@ PACKAGES = [
     "reproduction",
 ]
 PACKAGES += ["inspection", "cli"]
-TIERS = {"test": "not thorough", "test-all": ""}
+COMPILED = {"test": "not thorough and not interpreted", "test-all": "not interpreted"}
+"""Expression of pytest for the tests of a tier whose kernels are compiled."""
 TEXTUAL = ("tests/style/", "tests/workflow/", "tests/test_code_rules.py", "tests/test_project.py")
 """Tests that read the text of sources, or run the whole workflow: neither notices a wrong number."""
-LIMIT = 600.0  # s of processor time for the tests of one error
+LIMITED = [
+    "/bin/bash",
+    "-c",
+    'ulimit -t 600; exec "$@"',
+    "-",
+]  # s of processor time for the tests of one error
 SWAP = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult}
 COMPARE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq}
 STRICT = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
@@ -64,12 +70,6 @@ class Mutant:
     new: str
     start: int
     end: int
-
-    @property
-    def source(self) -> str:
-        """The file with the error in it."""
-        text = (PROJECT / self.path).read_text(encoding="utf-8")
-        return text[: self.start] + self.new + text[self.end :]
 
 
 def changes(tree: ast.AST) -> Iterator[tuple[str, ast.AST, ast.AST | str]]:
@@ -206,39 +206,33 @@ def test_files(mutant: Mutant) -> list[str]:
 def judge(mutant: Mutant, tier: str, copy: Path) -> str:
     """Return the first test of a tier that fails with an error, "" if none does."""
     target = copy / mutant.path
-    target.write_text(mutant.source, encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
-    expression = TIERS[tier]
-    if mutant.package == "kernels":
-        environment |= {"NUMBA_DISABLE_JIT": "1"}
-        expression = "interpreted" if tier == "test" else "interpreted or thorough"
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "--tb=no",
-        "-p",
-        "no:cacheprovider",
-        "-n0",
-        "-m",
-        expression,
-    ]
+    before = target.read_text(encoding="utf-8")
+    target.write_text(before[: mutant.start] + mutant.new + before[mutant.end :], encoding="utf-8")
+    plain = {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
+    plain["NUMBA_DISABLE_JIT"] = "1"
+    interpreted = (
+        "interpreted" if tier == "test" or mutant.package != "kernels" else "interpreted or thorough"
+    )
+    runs = [(plain, interpreted)]
+    if mutant.package != "kernels":
+        runs.insert(0, ({name: plain[name] for name in plain if name != "NUMBA_DISABLE_JIT"}, COMPILED[tier]))
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "--tb=no", "-p", "no:cacheprovider", "-n0", "-m"]
     try:
-        done = subprocess.run(
-            ["/bin/bash", "-c", f'ulimit -t {LIMIT:.0f}; exec "$@"', "-", *command, *test_files(mutant)],
-            cwd=copy,
-            env=environment,
-            capture_output=True,
-            text=True,
-        )
+        for environment, expression in runs:
+            done = subprocess.run(
+                [*LIMITED, *command, expression, *test_files(mutant)],
+                cwd=copy,
+                env=environment,
+                capture_output=True,
+                text=True,
+            )
+            if failed := re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE):
+                return failed[1]
+            if done.returncode not in (0, 5):  # 5: no test of this tier
+                return f"exit code {done.returncode}"
     finally:
-        shutil.copy(PROJECT / mutant.path, target)
-    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
-    if failed or done.returncode in (0, 5):  # 5: no test of this tier
-        return failed[1] if failed else ""
-    return f"exit code {done.returncode}"
+        target.write_text(before, encoding="utf-8")
+    return ""
 
 
 def main() -> None:
@@ -246,7 +240,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("number", type=int, help="number of errors")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tier", choices=TIERS, default="test")
+    parser.add_argument("--tier", choices=COMPILED, default="test")
     parser.add_argument("--packages", nargs="+", default=PACKAGES)
     parser.add_argument("-o", "--output", default="mutants.csv", help="table of errors, one a row")
     options = parser.parse_args()

@@ -175,11 +175,8 @@ def visible(text: object, longest: int | None = None, names: bool = False) -> st
     """Return a text as one line without characters that a terminal would interpret or hide. Line breaks,
     control characters and formatting characters are escaped, including characters that reverse the writing
     direction. All printed text passes through this function, because files may contain text from unknown
-    sources.
-
-    longest : maximum number of characters; the middle of a longer text is omitted.
-    names : True to keep bytes of file names that are not UTF-8, except bytes that are control characters by
-        themselves.
+    sources. `longest`: maximum number of characters; the middle of a longer text is omitted. `names`: True to
+    keep bytes of file names that are not UTF-8, except bytes that are control characters by themselves.
     """
     line = str(text)
     if longest is not None and len(line) > longest:

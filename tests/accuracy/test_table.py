@@ -6,12 +6,13 @@ import csv
 import io
 import math
 
+import accuracy_table
 import numpy as np
 import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart.accuracy import fit, table
+from gaspart.accuracy import table
 from gaspart.accuracy.table import price_of
 from gaspart.analysis.observables import observables_with
 from gaspart.cli import main
@@ -178,7 +179,7 @@ def folder(tmp_path):
 
 
 def test_the_table_holds_what_was_measured(folder, capsys):
-    fit.main(str(folder))
+    accuracy_table.main(str(folder))
     output = capsys.readouterr().out
     assert output.startswith("# What accuracy costs")
     rows = list(csv.DictReader(io.StringIO("".join(output.splitlines(keepends=True)[2:]))))

@@ -11,7 +11,7 @@ from gaspart import theory
 from gaspart.accuracy import tabulated
 from gaspart.accuracy.of_engine import Candidate
 from gaspart.accuracy.option import fluid_option
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
 from gaspart.theory.discretisation import contact_values
 

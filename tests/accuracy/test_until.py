@@ -252,7 +252,7 @@ STRESS = gp.Correlations(interval=0.1, lags=8, stress=True)
         (gp.Accuracy("D", 0.1), {"scene": gas(3, 64, 0.1)}),
         (gp.Accuracy("pressure", 0.1), {"scene": WALLS}),
         (gp.Accuracy("pressure", 0.1, face="y low"), {"scene": WALLS}),
-        (gp.Accuracy("shear_viscosity", 0.2), {"correlations": STRESS}),
+        (gp.Accuracy("shear_viscosity", 0.2), {"correlations": STRESS, "pairs": True}),
         (gp.Accuracy("Z", 0.03, start=10.0), {}),
     ],
     ids=lambda value: value.name if isinstance(value, gp.Accuracy) else "",
@@ -433,6 +433,7 @@ def test_a_run_without_a_contact_is_given_up(tmp_path, monkeypatch):
         assert data.sizes["frame"] == 201
 
 
+@pytest.mark.interpreted
 def test_the_pressure_of_walls_that_nothing_hits_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr(reached, "IDLE", 64)
     scene = gp.Scene(gp.Container((8.0, 8.0)), [], [gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5)])

@@ -140,7 +140,7 @@ def test_runs_of_different_states_may_have_one_seed(paths, tmp_path):
 
 
 def test_thermal_walls_make_runs_of_one_state_different(tmp_path):
-    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0))
+    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0, velocity=(0.0, 0.5)))
     scene = gp.Scene(
         gp.Container((12.0, 12.0), ("wall", "periodic")), [gp.Species(40, 0.5, temperature=1.0)], faces=faces
     )

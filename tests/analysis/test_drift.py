@@ -59,12 +59,14 @@ def test_replicas_show_a_drift_that_one_run_does_not():
 
 def test_an_atmosphere_that_falls_is_remarked_by_every_way_to_measure_it(tmp_path, capsys):
     scene = gp.Scene(
-        gp.Container((24.0, 60.0), ("periodic", "wall")), [gp.Species(300, 0.5)], gravity=(0.0, -0.05)
+        gp.Container((6.0, 6.0, 60.0), ("periodic", "periodic", "wall")),
+        [gp.Species(300, 0.5)],
+        gravity=(0.0, 0.0, -0.05),
     )
     paths = [gp.run(scene, seed=seed, duration=60.0, sample_interval=0.5, path=tmp_path / f"run-{seed}.nc")
              for seed in (1, 2)]  # fmt: skip
     remark = drift_of(*paths)
-    assert "the kinetic energy of a particle" in remark and "the mean position along y" in remark
+    assert "the kinetic energy of a particle" in remark and "the mean position along z" in remark
     assert main(["measure", str(paths[0]), "temperature", "speeds", "-o", str(tmp_path / "a.png")]) == 2
     for option in ([], ["-o", str(tmp_path / "a.png")]):
         assert main(["measure", str(paths[0]), "temperature", *option]) == 0

@@ -14,7 +14,7 @@ from gaspart.analysis.observables import OBSERVABLES
 from gaspart.analysis.run import open_run
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.theory import bulk
 from gaspart.theory.modes import diffusion_by_modes
 from gaspart.trajectory.correlator import Correlations

@@ -59,10 +59,11 @@ def test_temperature_is_about_the_flow(sheared):
     assert (np.diff(found.estimate) > 0.0).all()
 
 
+@pytest.mark.interpreted
 def test_species_apart_and_three_axes():
     kinds = [gp.Species(30, 0.3, temperature=1.0), gp.Species(10, 0.5, temperature=1.0)]
     simulation = gp.Simulation(gp.Scene(gp.Container((6.0,) * 3), kinds), gp.EventDriven(), seed=1)
-    simulation.advance(duration=10.0)
+    simulation.advance(duration=2.0)
     whole = gp.analysis.field(simulation, axes="xyz", cells=2)
     large = gp.analysis.field(simulation, axes="xyz", cells=2, species=1)
     assert float(whole.estimate.sum() * 27.0) == pytest.approx(40.0)

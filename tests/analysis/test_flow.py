@@ -72,7 +72,7 @@ def test_behind_a_shock_it_is_about_the_flow_of_the_moment(tmp_path):
     assert np.isnan(density.estimate[found["position"] < 17.0]).all()
 
 
-@pytest.mark.parametrize("drift", [0.0, 1.0])
+@pytest.mark.parametrize("drift", [pytest.param(0.0, marks=pytest.mark.thorough), 1.0])
 def test_in_a_wind_it_is_about_the_wind(tmp_path, drift):
     """Both walls slide with the gas, or rest with it: the same state in another frame."""
     velocity = (0.0, drift) if drift else None
@@ -160,6 +160,7 @@ def test_half_the_slope_of_displacements_is_the_integral_of_velocities(driven):
     assert slope == pytest.approx(integral, rel=0.05)
 
 
+@pytest.mark.thorough
 def test_all_observables_of_motion_are_about_the_same_flow(driven):
     first = float(gp.measure(driven, "vacf").estimate[0])
     table = gp.analysis.by_species(driven)
@@ -170,6 +171,7 @@ def test_all_observables_of_motion_are_about_the_same_flow(driven):
     assert square / 3.0 == pytest.approx(first, rel=0.02)
 
 
+@pytest.mark.thorough
 def test_about_rest_the_energy_of_the_flow_counts(driven):
     with gp.open_trajectory(driven) as data:
         part = data.isel(frame=slice(data.sizes["frame"] // 4, None))
@@ -203,11 +205,12 @@ def test_a_flow_that_changes_has_no_displacements_about_it(tmp_path):
     assert np.isfinite(gp.measure(path, "msd", about="rest").estimate).all()
 
 
-def test_motion_is_about_the_flow_or_about_rest(driven):
+def test_motion_is_about_the_flow_or_about_rest(couette):
     with pytest.raises(gp.SceneError, match="about = 'walls': must be one of"):
-        gp.measure(driven, "msd", about="walls")
+        gp.measure(couette, "msd", about="walls")
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_between_sheared_images_it_is_about_the_flow(tmp_path, dimension):
     """Points in the flow u_x = rate y: their c_x = v_x - u_x falls by rate c_y t, as they never collide."""

@@ -96,7 +96,8 @@ def test_two_names_of_one_gas_conduct_alike(tmp_path):
     half = gp.Species(16, 0.5, temperature=1.0)
     scene = gp.Scene(gp.Container((4.0,) * 3, "periodic"), [half, half])
     settings = gp.Correlations(0.25, 8, stress=True)
-    path = gp.run(scene, gp.EventDriven(), 1, 200.0, 0.25, tmp_path / "run.nc", correlations=settings)
+    settings = {"correlations": settings, "pairs": True}
+    path = gp.run(scene, gp.EventDriven(), 1, 200.0, 0.25, tmp_path / "run.nc", **settings)
     with gp.open_trajectory(path) as data:
         whole = A.thermal_conductivity(data)
         other = replace(scene, species=[half, replace(half, mass=1.0 + 1e-12)])

@@ -101,8 +101,8 @@ def test_the_radial_distribution_starts_at_contact(spheres):
 
 
 def test_the_profile_of_a_dilute_atmosphere_is_barometric(tmp_path):
-    container = gp.Container((200.0, 40.0), ("periodic", "wall"))
-    scene = gp.Scene(container, [gp.Species(200, 0.5, temperature=1.0)], gravity=(0.0, -0.05))
+    container = gp.Container((20.0, 10.0, 40.0), ("periodic", "periodic", "wall"))
+    scene = gp.Scene(container, [gp.Species(200, 0.5, temperature=1.0)], gravity=(0.0, 0.0, -0.05))
     path = gp.run(scene, gp.EventDriven(), 1, 8000.0, 20.0, tmp_path / "a.nc")
     density = A.profile(path, bins=8, start=3000.0)
     apart = (density.estimate - density.theory) / density.error

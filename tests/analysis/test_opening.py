@@ -28,6 +28,7 @@ def streamed():
     return simulation
 
 
+@pytest.mark.thorough
 def test_effusion(streamed):
     """n sqrt(k_B T / 2 pi m) w = 10 sqrt(2 / pi) 2 = 15.96 per time, of which the net number is exact."""
     found = A.particle_flux(streamed, "x", start=0.0)
@@ -40,6 +41,7 @@ def test_effusion(streamed):
     assert float(found.estimate[0]) == pytest.approx(last.sum() / 4.0)
 
 
+@pytest.mark.thorough
 def test_the_flux_of_a_mirrored_or_turned_gas(streamed):
     """Its sign follows the axis, as its name does."""
     with_x = A.particle_flux(streamed, "x", start=0.0)

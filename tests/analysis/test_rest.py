@@ -36,6 +36,7 @@ def test_a_pile_presses_the_floor_by_its_weight(at_rest, start, error):
     assert np.isnan(pressure.sel(face=["x low", "x high"])).all()  # a thrust that nothing measures
 
 
+@pytest.mark.thorough
 def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_rest):
     found = A.wall_pressure(at_rest, start=0.0)
     with gp.open_trajectory(at_rest) as data:

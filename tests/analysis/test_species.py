@@ -41,6 +41,7 @@ def test_a_row_for_each_species_that_moves(table):
     assert all("units" in table[name].attrs for name in table.data_vars)
 
 
+@pytest.mark.thorough
 def test_what_accepts_a_species_has_its_value_there(path, table):
     motion = [name for name in selecting("species") if name in observables_with(scatter="particles")]
     assert {"D", "msd", "vacf"} <= set(motion)
@@ -51,6 +52,7 @@ def test_what_accepts_a_species_has_its_value_there(path, table):
         assert table[name].attrs["units"] == found.estimate.attrs["units"]
 
 
+@pytest.mark.thorough
 def test_temperatures_and_speeds_agree_with_equipartition(path, table):
     with gp.open_trajectory(path) as run:
         whole = float((run["kinetic_energy"][60:] * 2 / (3 * 141)).mean())

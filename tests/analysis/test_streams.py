@@ -70,7 +70,9 @@ def correlations(path):
 
 
 @pytest.mark.parametrize("displacements", [False, True])
-@pytest.mark.parametrize("name", CORRELATED)
+@pytest.mark.parametrize(
+    "name", ["species", "mixture", pytest.param("obstacles", marks=pytest.mark.thorough)]
+)
 def test_correlations_of_blocks_of_particles_are_those_of_all(tmp_path, monkeypatch, name, displacements):
     path = gp.run(CORRELATED[name], seed=1, duration=24.0, sample_interval=0.1, path=tmp_path / "run.nc",
                   displacements=displacements)  # fmt: skip

@@ -43,7 +43,10 @@ def off(found):
     return np.abs(found.deviation.values[np.isfinite(found.deviation.values)])
 
 
-@pytest.mark.parametrize(("engine", "drift"), [("event", 0.0), ("dsmc", 0.0), ("dsmc", 2.0)])
+@pytest.mark.parametrize(
+    ("engine", "drift"),
+    [("dsmc", 2.0), *(pytest.param(engine, 0.0, marks=pytest.mark.thorough) for engine in ENGINES)],
+)
 def test_heat_of_free_flight(engine, drift):
     """The flux of n = 6.25 points between 2 and 1: 4 n sqrt(2 / 2 pi) (sqrt 2 - 1) = 5.84, whatever the speed
     of the plates along themselves."""
@@ -56,7 +59,7 @@ def test_heat_of_free_flight(engine, drift):
 
 def test_heat_between_free_flight_and_a_fluid():
     """A fluid whose flux differs by more than 8 % from either limit."""
-    scene = plates(1000, 1.0, hot=2.0)
+    scene = plates(1000, 1.0, hot=2.0, drift=1e-9)  # the kernels of plates that slide
     found = A.heat_flux(made(scene, 400.0))
     free = float(gp.theory.free_molecular_flux(6.25, 2.0, 1.0, 3))
     flux = float(found.theory[1])
@@ -92,6 +95,7 @@ def test_stress_and_heat_of_sliding_plates_in_free_flight():
     assert float(heat.estimate.sum()) == pytest.approx(work, abs=3.0 * float(heat.error.sum()))
 
 
+@pytest.mark.thorough
 def test_a_force_along_plates_is_what_they_take():
     """Half the weight on each in a steady state: exact, from a start that is none."""
     scene = plates(500, 0.3, gravity=(0.0, 0.02, 0.0))
@@ -103,18 +107,20 @@ def test_a_force_along_plates_is_what_they_take():
     assert float(y.estimate.sum()) == pytest.approx(weight, rel=1e-5)
 
 
+@pytest.mark.thorough
 def test_equal_plates_take_no_heat():
     found = A.heat_flux(made(plates(200, 1.0), 100.0))
     assert (found.theory == 0.0).all() and found.attrs["source"] == "equilibrium"
     assert (off(found) < 3.0).all()
 
 
+@pytest.mark.interpreted
 def test_the_equations_of_points_do_not_depend_on_density():
     """The path of particles that touch is shorter than that of points by the contact value."""
     scene = plates(50, 0.2)
     paths = {}
     for engine in ENGINES:
-        with open_run(made(scene, 2.0, engine), 0.0) as run:
+        with open_run(made(scene, 0.5, engine), 0.0) as run:
             paths[engine] = plates_of(run)
     found = paths["event"]
     assert found.filled > 0.03 and found.length == pytest.approx(GAP - 2.0 * scene.largest_radius)
@@ -123,10 +129,11 @@ def test_the_equations_of_points_do_not_depend_on_density():
     assert found.knudsen == pytest.approx(0.2 / contact, rel=1e-6) and contact > 1.08
 
 
+@pytest.mark.interpreted
 def test_refusals():
     walled = gas(3, 30, 0.1, boundary="wall")
-    still = made(plates(200, 1.0), 5.0)
-    for name, scene in (("heat_flux", made(walled, 5.0, "event")), ("wall_shear", still)):
+    still = made(plates(100, 1.0), 0.5)
+    for name, scene in (("heat_flux", made(walled, 0.5, "event")), ("wall_shear", still)):
         with pytest.raises(SceneError, match="faces"):
             measure(scene, name)
     slow = plates(2, 1.0)
@@ -135,7 +142,7 @@ def test_refusals():
         A.heat_flux(made(slow, 2.0))
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.thorough), 3])
 def test_heat_of_free_flight_beside_an_open_face(dimension):
     """Points come from a reservoir at 2 and go back at the wall's 1: each leaves (d + 1) / 2 of heat."""
     density, radius = 300.0 / 10.0**dimension, 1e-4

@@ -88,6 +88,7 @@ def exact_pressures(sizes, lengths, number=400):
     return found
 
 
+@pytest.mark.thorough
 def test_two_discs_of_two_sizes_press_as_the_contact_theorem_states(tmp_path):
     """k_B T is m <v^2> of a component, 2 E / 4 at fixed energy."""
     path = run(mixture_of_two(), 30000.0, 15.0, tmp_path / "a.nc")
@@ -157,6 +158,7 @@ def test_heat_is_given_per_area_that_moving_particles_reach(tmp_path):
     np.testing.assert_allclose(heat, sim.tally.wall_energy[:2] / (400.0 * 5.9), rtol=0.1)
 
 
+@pytest.mark.interpreted
 def test_a_file_without_the_tally_refuses_the_pressure_and_has_the_force(tmp_path):
     path = run(mixture_of_two(), 20.0, 0.5, tmp_path / "a.nc")
     with gp.open_trajectory(path) as data:
@@ -166,6 +168,7 @@ def test_a_file_without_the_tally_refuses_the_pressure_and_has_the_force(tmp_pat
         gp.analysis.wall_pressure(lacking)
 
 
+@pytest.mark.interpreted
 def test_sides_of_a_mixture_beside_a_wall_that_moves_have_a_force_only(tmp_path):
     species = [gp.Species(10, 0.3, temperature=1.0), gp.Species(10, 0.1, temperature=1.0)]
     faces = {"x_low": gp.Piston(mass=5.0, pressure=1.0)}

@@ -8,9 +8,10 @@ refuses unmarked tests that use other loops of the engines.
 
 import os
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 
 from battery.disturbed import ROWS
-from battery.kinds_of_runs import CANONICAL, kernels_of, repeated_simulation, start_of
+from battery.kinds_of_runs import CANONICAL, KINDS, kernels_of, repeated_simulation, start_of
 from battery.loops import LIST, loops_in_use
 from battery.test_bits import CANONICAL as CANONICAL_ROWS
 from battery.test_bits import COMPARED
@@ -50,14 +51,31 @@ def compile_row(name):
     return loops_in_use()
 
 
-DISCS = gp.EventDriven(), gp.TimeStepped(2.0**-6), gp.DSMC(2.0**-4), gp.DSMC(2.0**-4, model="enskog")
-"""Engines under which many tests have a plain gas of discs."""
+DISCS = gas(2, 100, 0.1)
+OBSTACLES = replace(
+    gas(2, 100, 0.1, "wall"), particles=[gp.Particle((4.0, 4.0), (0.0, 0.0), 0.5, fixed=True)]
+)
+PLATES = {"x_low": gp.Thermal(1.0, velocity=(0.0, -0.5)), "x_high": gp.Thermal(1.0, velocity=(0.0, 0.5))}
+GRAINS = gp.Restitution(0.9, contact_duration=0.01)
+PLAIN = [
+    *((DISCS, engine) for engine in (gp.EventDriven(), gp.TimeStepped(2.0**-6), gp.DSMC(2.0**-4))),
+    (OBSTACLES, gp.EventDriven()),
+    (replace(OBSTACLES, restitution=GRAINS, faces={"x_low": gp.Thermal(1.0)}), gp.EventDriven()),
+    *((KINDS[name].scene, gp.EventDriven()) for name in ("periodic", "mixture", "gravity", "piston")),
+    (replace(gas(2, 100, 0.1, ("wall", "periodic")), faces=PLATES), gp.EventDriven()),
+    (replace(KINDS["slit"].scene, faces={"z_low": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}), gp.DSMC(0.1)),
+    (KINDS["walls"].scene, gp.TimeStepped(2.0**-6, boxes_per_side=2)),
+    (KINDS["periodic"].scene, gp.EventDriven(), gp.StressTally()),
+    (gas(3, 100, 0.3), gp.EventDriven()),
+    (gas(3, 20, 0.55, arrangement="compressed"), gp.EventDriven()),
+]
+"""Scenes, engines and tallies that many tests have: nothing records their events, but of discs."""
 
 
-def compile_discs(engine):
-    """Begin a run of discs."""
-    simulation = gp.Simulation(gas(2, 100, 0.1), engine, 1)
-    simulation.record_events = engine.records_events
+def compile_plain(scene, engine, *tallies):
+    """Begin a run."""
+    simulation = gp.Simulation(scene, engine, 1, tallies=list(tallies))
+    simulation.record_events = engine.records_events and scene is DISCS
     simulation.advance(until=0.25)
     return loops_in_use()
 
@@ -67,7 +85,7 @@ def main():
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         done = [pool.submit(compile_run, *run) for run in different(CANONICAL)]
         done += [pool.submit(compile_row, name) for name in ROWS if name in CANONICAL_ROWS | COMPARED]
-        done += [pool.submit(compile_discs, engine) for engine in DISCS]
+        done += [pool.submit(compile_plain, *run) for run in PLAIN]
         loops = set().union(*(future.result() for future in done))
     LIST.parent.mkdir(exist_ok=True)
     LIST.write_text("\n".join(sorted(loops)))

@@ -79,7 +79,7 @@ _RAMPS = {
     "z_high": gp.Thermal({"x_low": 2.0, "x_high": 1.0}, accommodation=0.75),
 }
 KINDS = {
-    "periodic": Kind(_scene(_CUBE, PERIODIC, _gas())),
+    "periodic": Kind(_scene(_CUBE, PERIODIC, _gas()), impulses=True),
     "walls": Kind(_scene((5.0, 5.0, 5.0), "wall", _gas(24)), moving=_AT_REST),
     "slit": Kind(_scene((4.0, 5.0, 6.0), _SLIT, _gas(24)), interval=0.25, impulses=True),
     "gravity": Kind(
@@ -146,9 +146,7 @@ KINDS = {
             _CUBE, PERIODIC, _gas(), restitution=gp.Restitution(0.8), thermostat=gp.Thermostat(1.0, 0.0625)
         )
     ),
-    "mixture": Kind(
-        _scene((4.0, 5.0, 4.0), PERIODIC, _gas(20), _gas(12, radius=0.375, mass=4.0)), impulses=True
-    ),
+    "mixture": Kind(_scene((4.0, 5.0, 4.0), PERIODIC, _gas(20), _gas(12, radius=0.375, mass=4.0))),
     "halves": Kind(_scene(_CUBE, PERIODIC, _gas(16), _gas(16)), impulses=True),
     "polydisperse": Kind(_scene(_CUBE, PERIODIC, _gas(radius=0.45, polydispersity=0.2))),
     "open": Kind(
@@ -194,7 +192,6 @@ def runs():
 
 
 _EVENT = ("periodic", "walls", "gravity", "lees_edwards", "plates", "piston", "thermostat", "mixture", "open")
-_EVENT += ("wind",)
 CANONICAL = [
     *(("event", name) for name in _EVENT),
     *(("step", name) for name in ("periodic", "walls", "mixture")),
@@ -204,9 +201,9 @@ CANONICAL = [
 """Runs whose kernels `make test` compiles; the other kinds are in `make test-all`."""
 
 
-KNOWN_BY_OTHERS = {("event", "wind"), ("step", "periodic"), ("step", "walls")}
+KNOWN_BY_OTHERS = {("step", "periodic"), ("step", "walls")}
 KNOWN_BY_OTHERS |= {(f"dsmc {model}", "periodic") for model in ("boltzmann", "enskog")}
-"""Canonical runs whose observables are those of other ones: of mixtures, and in a frame that moves."""
+"""Canonical runs whose observables are those of mixtures."""
 
 
 def kernels_of(engine, scene):
@@ -261,13 +258,11 @@ class Start:
         half = self.interval / 2.0
         if self.scene.is_open:  # nothing follows particles that come and go
             return {"frames": {}}
+        every = {"pairs": self.engine.records_events}  # to record none needs other kernels
         found = {
-            "frames": {"displacements": True, "pairs": self.engine.records_events},
-            "correlations": {"displacements": True, "correlations": Correlations(half, LAGS)},
-            "fluxes": {
-                "pairs": self.engine.records_events,
-                "correlations": Correlations(half, LAGS, stress=True),
-            },
+            "frames": every | {"displacements": True},
+            "correlations": every | {"displacements": True, "correlations": Correlations(half, LAGS)},
+            "fluxes": every | {"correlations": Correlations(half, LAGS, stress=True)},
         }
         for form, tally in self.tallies.items():
             found[form] = {"tallies": [tally]}
@@ -317,7 +312,9 @@ def repeated_simulation(engine, name, form="frames", intervals=FRAMES):
     form."""
     start = start_of(engine, name)
     tallies = [tally for key, tally in start.tallies.items() if key == form]
+    pairs = start.engine.records_events and not start.scene.is_open and not tallies
     simulation = gp.Simulation(start.scene, start.engine, start.seed, initial=start.initial, tallies=tallies)
+    simulation.record_events = pairs
     quantum = start.engine.quantum or 0.0
     simulation.advance(until=intervals * start.interval + 0.5 * quantum)
-    return repeat_run(simulation, pairs=start.engine.records_events and not start.scene.is_open)
+    return repeat_run(simulation, pairs=pairs)

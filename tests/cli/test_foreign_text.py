@@ -14,7 +14,7 @@ import gaspart as gp
 from gaspart.cli import main
 from gaspart.errors import SceneError, SimulationError, visible
 from gaspart.interruption import describe_interruption, set_note
-from gaspart.trajectory.checkpoint import checkpoint_path
+from gaspart.trajectory.opening import checkpoint_path
 
 NASTY = [
     *("\x1b[2J\x1b[H", "\x1b]0;title\x07", "\x9b2J", "\r", "\n", "\x0b", "\x0c", "\x08" * 20, "\x7f", "\x00"),

@@ -57,6 +57,7 @@ def test_pictures_of_a_gif_are_written_when_they_are_drawn(tmp_path):
     assert np.abs(images.astype(int) - drawn).mean() < 20.0  # 256 colours
 
 
+@pytest.mark.interpreted
 def test_a_film_of_a_part_has_its_frames(runs):
     with gp.open_trajectory(runs / "discs.nc") as data:
         times = data["time"].values
@@ -85,6 +86,7 @@ def test_what_a_signal_removes_is_not_made_again(runs, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.interpreted
 def test_the_poster_of_a_film_is_its_middle_picture(runs):
     path = runs / "shown.mp4"
     film(runs / "discs.nc", path, size=(120, 90), clock=False)
@@ -104,6 +106,7 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
     assert np.abs(images[-1] - last).mean() < 4.0 < np.abs(images[-1] - first).mean()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("scene", ["discs", "spheres"])
 def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
     timed, size = runs / f"{scene}-timed.gif", (240, 180)
@@ -157,6 +160,7 @@ def test_the_bar_has_a_round_length(longest, length):
     assert round_length(longest) == length
 
 
+@pytest.mark.interpreted
 def test_walls_of_the_scene_are_drawn(runs):
     with gp.open_trajectory(runs / "discs.nc") as trajectory:
         image = gp.render(trajectory, size=(240, 180), colour=np.ones((21, 3)))
@@ -172,6 +176,7 @@ def test_a_trail_is_cut_where_a_periodic_face_is_crossed():
     assert pieces(way[:1], lengths) == []
 
 
+@pytest.mark.interpreted
 def test_the_command_line_makes_pictures_and_films(runs, capsys):
     source, size = str(runs / "discs.nc"), ["--size", "120x90"]
     assert main(["render", source, "-o", str(runs / "a.png"), "--frame", "2", *size]) == 0
@@ -188,6 +193,7 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
     ]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [

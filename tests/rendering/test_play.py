@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import axe_core_python
+import numpy as np
 import pytest
 import yaml
 from browsers import CHROMIUM, FIREFOX, found_in
@@ -26,6 +27,7 @@ BROWSERS = [
     pytest.param(FIREFOX, marks=pytest.mark.skipif(FIREFOX is None, reason="no Firefox"), id="firefox"),
 ]
 MOST = 1_000_000  # bytes of a page
+OLD = Path(__file__).with_name("old_states.json")  # of the scene `lorentz`, by a page of commit 74e2cd31
 AXE = Path(axe_core_python.__file__).with_name("axe.min.js")
 DRIVE = """
 const wait = ms => new Promise(go => setTimeout(go, ms)), byId = id => document.getElementById(id);
@@ -67,9 +69,10 @@ def compared(scene, folder, number, seed, duration):
 
 @needs_node
 def test_a_page_has_the_bits_of_simulations(tmp_path):
-    differ, collisions = compared(lorentz(), tmp_path, 4, 1, 900.0)
+    # Of this seed all contacts lose energy and a face is thermal: natively, one kind of kernels does.
+    differ, collisions = compared(lorentz(), tmp_path, 3, 17, 300.0)
     assert not differ
-    assert collisions > 50_000
+    assert collisions > 10_000
 
 
 @needs_node
@@ -94,17 +97,64 @@ def test_browsers_have_the_bits_of_simulations(browser, gas, tmp_path):
     assert sum(result["collisions"] for result in theirs) > 100_000
 
 
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A page of the scene `lorentz`."""
+    return gp.play(lorentz(), SEED).save(tmp_path_factory.mktemp("play") / "page.html")
+
+
 @needs_chromium
-def test_a_page_runs_in_a_browser(tmp_path):
-    page = gp.play(lorentz(), SEED).save(tmp_path / "page.html")
+def test_a_page_runs_in_a_browser(page, tmp_path):
     script = """
 await steps(70);
 await set("x_low", 3);
-return { rows: byId("meters").innerText, flags: gas.flags, over: over(), time: gas.time + elapsed };
+const time = gas.time + elapsed;
+return { rows: byId("meters").innerText, flags: gas.flags, over: over(), width: innerWidth, time };
 """
     found, lines = found_in(CHROMIUM, page, DRIVE + script, tmp_path, width=390)
-    assert not lines and not found["over"]
+    assert not lines and not found["over"] and found["width"] == 390
     assert found["flags"] == "rt" and found["time"] > 0.0
+
+
+@needs_chromium
+def test_links_and_files_of_the_first_pages_open(page, tmp_path):
+    script = """
+const inPage = () => {
+  const { positions, velocities } = gas.state;
+  return [[...positions], [...velocities], byId("x_low").value, byId("note").textContent];
+};
+const give = async text => {
+  const files = new DataTransfer(); files.items.add(new File([text], "gas.json"));
+  byId("open").files = files.files; byId("open").onchange({ target: byId("open") }); await ready();
+};
+const seen = [inPage()];
+byId("anew").click(); await ready();
+await give(JSON.stringify(FILE)); seen.push(inPage());
+byId("link").click(); await ready();
+const saved = JSON.parse(decodeURIComponent(location.hash.slice(7)));
+seen.push([saved.settings, new Float64Array(bytesOf(saved.positions).buffer).length]);
+FILE.page.values.x_low = 99; await give(JSON.stringify(FILE)); seen.push(inPage());
+FILE.page.values.x_low = 3; FILE.state.spins.pop(); await give(JSON.stringify(FILE)); seen.push(inPage());
+await give("{}"); seen.push(inPage());
+return seen;
+"""
+    old = json.loads(OLD.read_text())
+    script = f"{DRIVE} const FILE = {json.dumps(old['file'])}; {script}"
+    found, lines = found_in(CHROMIUM, page, script, tmp_path, fragment=old["link"])
+    link, file, again, *refused = found
+    state = [np.array(old["file"]["state"][name]).ravel().tolist() for name in ("positions", "velocities")]
+    assert not lines and link == file == [*state, "3", ""]
+    assert again == [{"restitution": 1, "roughness": -1, "x_low": 1, "x_high": 0}, 136]
+    assert [values[:3] for values in refused] == [file[:3]] * 3
+    assert all(note.startswith("this file does not fit this page: ") for *_, note in refused)
+
+
+@needs_chromium
+def test_a_broken_link_opens_the_gas_with_a_line(page, tmp_path):
+    script = f'{DRIVE} return [gas.flags, byId("note").textContent];'
+    found, lines = found_in(CHROMIUM, page, script, tmp_path, fragment="#state=%7B")
+    flags, note = found
+    assert not lines and flags == "r" and note.startswith("this link does not fit this page")
 
 
 def test_a_page_shows_all_particles_before_it_runs(gas):
@@ -113,22 +163,22 @@ def test_a_page_shows_all_particles_before_it_runs(gas):
 
 
 @needs_chromium
-def test_in_a_frame_of_another_page_the_gas_runs_alone(tmp_path):
-    page = gp.play(lorentz(), SEED).save(tmp_path / "page.html")
-    page.write_text(page.read_text().replace("<head>", '<head><script>window.name = "alone"</script>'))
+def test_in_a_frame_of_another_page_the_gas_runs_alone(page, tmp_path):
+    named = tmp_path / "page.html"
+    named.write_text(page.read_text().replace("<head>", '<head><script>window.name = "alone"</script>'))
     script = """
 for (let n = 0; n < 200 && !gas.time; n++) await wait(50);
 const shown = [...document.querySelectorAll("h1, aside, footer, fieldset, svg, canvas, button")].filter(
   it => it.getClientRects().length).map(it => it.id);
 return { shown, time: gas.time, over: document.documentElement.scrollHeight > innerHeight };
 """
-    found, lines = found_in(CHROMIUM, page, DRIVE + script, tmp_path, width=600, height=400)
+    found, lines = found_in(CHROMIUM, named, DRIVE + script, tmp_path, width=600, height=400)
     assert not lines and found["time"] > 0.0 and not found["over"]
     assert found["shown"] == ["canvas", "run"]
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("width", [1400, 500])
+@pytest.mark.parametrize("width", [1400, 390])
 @pytest.mark.parametrize("browser", BROWSERS)
 def test_controls_and_gauges_work(browser, width, gas, tmp_path):
     assert gas.stat().st_size < MOST
@@ -207,6 +257,10 @@ def test_a_saved_state_continues(tmp_path, capsys):
     path.write_text(json.dumps({"scene": scene.to_dict(), "state": saved}))
     assert gp.Scene.from_file(path) == scene
     assert (gp.read_state(path, scene).velocities == state.velocities).all()
+    old = json.loads(OLD.read_text())["file"]
+    path.write_text(json.dumps(old))
+    read = gp.read_state(path, gp.Scene.from_file(path))
+    assert read.positions.tolist() == old["state"]["positions"]
     path.write_text(json.dumps({"scene": scene.to_dict(), "state": {}}))
     assert (
         main(["run", str(path), "--from", str(path), "-o", str(tmp_path / "gas.nc"), "--duration", "1"]) == 2

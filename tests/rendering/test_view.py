@@ -168,9 +168,9 @@ get("canvas").dispatchEvent(new window.WheelEvent("wheel", {{ deltaY: -400, canc
 const zoomed = print();
 get("reset").click(); set("colour", "change", "speed");
 const again = set("frame", "input", "0");
-get("play").click();
+get("toggle").click();
 return {{ prints: [first, later, coloured, dragged, zoomed], again: again === first, share, clock, bar,
-  label: get("play").textContent, over: document.documentElement.scrollWidth > window.innerWidth,
+  label: get("toggle").textContent, over: document.documentElement.scrollWidth > window.innerWidth,
   buttons: document.querySelector("footer").getBoundingClientRect().bottom <= window.innerHeight }};
 """
     for name, found in found_on(["discs.html", "spheres.html"], script, pages, width).items():
@@ -207,6 +207,7 @@ def test_faces_have_the_looks_of_pictures_where_they_are(faces):
         assert {corner[0] for corner in hot["corners"]} == {14.0}
 
 
+@pytest.mark.thorough
 @needs_chromium
 @pytest.mark.parametrize("width", [1400, 390])
 def test_the_page_draws_faces_and_names_them(faces, pages, width):
@@ -257,7 +258,7 @@ return {{ names, changed: ordered !== first, bar: get("bar").textContent.trim() 
 @needs_chromium
 def test_playing_advances_the_frames(pages):
     script = """
-window.eval('get("rate").value = "60"; get("play").click()');
+window.eval('get("rate").value = "60"; get("toggle").click()');
 const seen = new Set();
 for (let n = 1; n < 40; n++) { window.eval(`step(due + ${n})`); seen.add(window.eval("frame")); }
 return [...seen].sort();

@@ -169,7 +169,7 @@ def test_a_mistake_is_one_line(changed, line, made, tmp_path):
 
 
 BETWEEN_WALLS = gp.Scene(
-    gp.Container((12.0, 12.0)), [gp.Species(20, 0.5, temperature=1.0)], gravity=(0.0, -1.0)
+    gp.Container((6.0, 6.0, 6.0)), [gp.Species(20, 0.5, temperature=1.0)], gravity=(0.0, 0.0, -1.0)
 )  # fmt: skip
 
 
@@ -182,14 +182,14 @@ def test_two_sweeps_in_one_folder_each_run_their_own_scene(tmp_path):
         if done == 1:
             others.append(swept(tmp_path, {"species.0.mass": [1.0, 2.0]}, ["density"], hot, duration=3.0))
 
-    over = {"gravity": [[0.0, -1.0], [0.0, -2.0]]}
+    over = {"gravity": [[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]]}
     data = swept(tmp_path, over, ["density"], BETWEEN_WALLS, progress, duration=3.0)
     counts = {}
     for path in tmp_path.rglob("*.nc"):
         with gp.open_trajectory(path) as trajectory:
             counts[path.parent.name] = trajectory.attrs["count"]
     assert counts == {
-        **{f"scene.gravity=0.0x{g}": 20 for g in (-1.0, -2.0)},
+        **{f"scene.gravity=0.0x0.0x{g}": 20 for g in (-1.0, -2.0)},
         **{f"scene.species.0.mass={mass}": 5 for mass in (1.0, 2.0)},
     }
     assert "count: 20" in data.attrs["scene"] and "count: 5" in others[0].attrs["scene"]
@@ -197,7 +197,7 @@ def test_two_sweeps_in_one_folder_each_run_their_own_scene(tmp_path):
 
 def swept_between_walls(folder):
     """A sweep of three points, in a process of its own."""
-    over = {"gravity": [[0.0, -1.0], [0.0, -2.0], [0.0, -3.0]]}
+    over = {"gravity": [[0.0, 0.0, -1.0], [0.0, 0.0, -2.0], [0.0, 0.0, -3.0]]}
     return swept(folder, over, ["density"], BETWEEN_WALLS, duration=20.0)
 
 
@@ -294,12 +294,12 @@ def test_the_remainder_of_another_sweep_is_replaced_only_if_asked_for(tmp_path):
     swept(tmp_path, over, ["density"], BETWEEN_WALLS, duration=3.0)
     folder = tmp_path / "points/scene.species.0.mass=1.0"
     folder.rename(f"{folder}.partial")
-    other = replace(BETWEEN_WALLS, gravity=(0.0, -2.0))
+    other = replace(BETWEEN_WALLS, gravity=(0.0, 0.0, -2.0))
     with pytest.raises(gp.SceneError, match=r"points\[scene.species.0.mass=1.0\].path = .*exists"):
         swept(tmp_path, over, ["density"], other, duration=3.0)
     swept(tmp_path, over, ["density"], other, duration=3.0, overwrite=True)
     with gp.open_trajectory(folder / "replica-0.nc") as trajectory:
-        assert gp.Scene.from_dict(parse_yaml(trajectory.attrs["scene"])).gravity == (0.0, -2.0)
+        assert gp.Scene.from_dict(parse_yaml(trajectory.attrs["scene"])).gravity == (0.0, 0.0, -2.0)
 
 
 def test_the_packing_fraction_of_a_polydisperse_species(tmp_path):

@@ -6,8 +6,7 @@ import pytest
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.scene.facts import plain_gas
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas, plain_gas
 
 BOX = gp.Container((10.0, 8.0), "periodic")
 DISCS = gp.Species(50, 0.3, mass=2.0, temperature=1.5)

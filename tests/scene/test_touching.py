@@ -56,6 +56,7 @@ def row(*places, radius=0.05, speed=2.0):
     return gp.Scene(gp.Container((1.0, 0.4, 0.4)), particles=[first, *particles])
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("engine", [gp.EventDriven(), gp.EventDriven(search="pairs"), gp.TimeStepped(0.001)])
 def test_a_row_of_touching_balls_hands_on_the_momentum(engine):
     """Newton's cradle: the last ball leaves with the speed of the first, at the time of the first contact."""
@@ -85,6 +86,7 @@ def test_touching_across_a_periodic_face():
         gp.Scene(box, particles=[particles[0], gp.Particle((0.1, 0.3), (0.0, 0.0), 0.1 + 1e-14)])
 
 
+@pytest.mark.interpreted
 def test_a_tower_on_the_floor_stands():
     """Four discs that touch, at rest under gravity, with contacts that lose energy: nothing moves."""
     particles = [gp.Particle((1.0, y), (0.0, 0.0), 0.1) for y in (0.1, 0.3, 0.5, 0.7)]

@@ -15,8 +15,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.trajectory import amber, recording
 from gaspart.trajectory.amber import frame_count
-from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 
 ENGINES = {
     "event": gp.EventDriven(),
@@ -26,7 +25,13 @@ ENGINES = {
     "dsmc": gp.DSMC(time_step=0.03125, cells_per_side=2),
     "enskog": gp.DSMC(time_step=0.03125, cells_per_side=1, model="enskog"),
 }
-every_engine = pytest.mark.parametrize("engine", ENGINES.values(), ids=ENGINES.keys())
+every_engine = pytest.mark.parametrize(
+    "engine",
+    [
+        pytest.param(engine, id=name, marks=[pytest.mark.thorough] * (name == "float32"))
+        for name, engine in ENGINES.items()
+    ],
+)
 
 
 class Cut(BaseException):
@@ -88,7 +93,7 @@ def test_cut_short_after_any_checkpoint_and_resumed(tmp_path, monkeypatch, engin
 
 
 def test_spins_and_counters_of_some_particles_cut_short_and_resumed(tmp_path, monkeypatch):
-    rough = replace(small("wall"), restitution=gp.Restitution(0.9, 0.5))
+    rough = replace(gas(2, 40, 0.2, "wall"), restitution=gp.Restitution(0.9, 0.5))
     cut_and_resume(tmp_path, monkeypatch, 5, rough, ENGINES["event"], follow=7)
 
 
@@ -133,7 +138,7 @@ def frames_in(partial):
         return 0
 
 
-@pytest.mark.parametrize("engine", ["event", "step"])
+@pytest.mark.parametrize("engine", ["event", pytest.param("step", marks=pytest.mark.thorough)])
 def test_killed_again_and_again_and_resumed(tmp_path, engine):
     """kill -9, at moments that differ from run to run of this test; the finished file never does."""
     scene, path = tmp_path / "scene.yaml", tmp_path / "run.nc"

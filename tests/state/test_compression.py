@@ -46,7 +46,8 @@ def test_a_growing_root_is_the_first_touch(r, v, sigma, rate):
 
 
 @pytest.mark.parametrize(
-    ("dimension", "fraction", "boundary"), [(3, 0.60, "periodic"), (2, 0.80, "periodic"), (3, 0.52, "wall")]
+    ("dimension", "fraction", "boundary"),
+    [(3, 0.60, "periodic"), pytest.param(2, 0.80, "periodic", marks=pytest.mark.thorough), (3, 0.52, "wall")],
 )
 def test_compression_reaches_what_insertion_cannot(dimension, fraction, boundary):
     scene = gas(dimension, 500, fraction, boundary, arrangement="compressed")

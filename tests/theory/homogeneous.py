@@ -11,7 +11,7 @@ import numpy as np
 
 from gaspart.theory.boltzmann import _meetings, directions, dot
 from gaspart.theory.geometry import checked_dimension
-from gaspart.theory.rough import rough_ratio
+from gaspart.theory.granular import rough_ratio
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ GOOD |= {"side_over_diameter": 9.0, "boundary": "wall", "radius": 0.5, "side": 9
 
 
 MODULES = [import_module(f"gaspart.theory.{one.name}") for one in pkgutil.iter_modules(theory.__path__)]
-FORMULAS = {name: getattr(theory, name) for name in theory.__all__}
+FORMULAS = {name: getattr(theory, name) for name in dir(theory)}
 FORMULAS |= {key: one for part in MODULES for key, one in vars(part).items() if hasattr(one, "__wrapped__")}
 
 

@@ -12,7 +12,7 @@ from theory.half_space import temperature_jump, velocity_slip
 from gaspart import theory
 from gaspart.theory import heat, shear
 from gaspart.theory.boltzmann import brackets, collisions, flux_relaxation
-from gaspart.theory.free_flights import collision_rate_at_speed, free_time_pdf
+from gaspart.theory.enskog import collision_rate_at_speed, free_time_pdf
 from gaspart.theory.granular import driven_cumulant
 from gaspart.theory.shear import VELOCITY_SLIP
 

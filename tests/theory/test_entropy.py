@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.theory.entropy import entropy_deficit, equal_speeds
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY
+from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, entropy_deficit, equal_speeds
 
 EDGES = np.linspace(0.0, 2.5, 50)
 

@@ -140,6 +140,7 @@ def test_without_collisions_the_profile_is_that_of_free_flight():
     assert energy / number == pytest.approx(2.0 * np.ones(2), rel=0.05)
 
 
+@pytest.mark.thorough
 def test_the_bend_of_the_profile_is_that_of_the_program():
     """And not that of a gas, -0.12."""
     metal = MetalSlab(2.0, heat.METAL_GAP, 16_000, seed=4)

@@ -22,7 +22,9 @@ def mixture(dimension):
     return gp.Scene(container, species, [particle])
 
 
-@pytest.fixture(scope="module", params=[2, 3], ids=["discs", "spheres"])
+@pytest.fixture(
+    scope="module", params=[pytest.param(2, marks=pytest.mark.thorough), 3], ids=["discs", "spheres"]
+)
 def written(request, tmp_path_factory):
     """A trajectory of 9 frames, and the states and tallies that it should hold."""
     scene, engine = mixture(request.param), ENGINE

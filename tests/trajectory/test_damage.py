@@ -14,8 +14,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.trajectory import amber, recording
-from gaspart.trajectory.checkpoint import checkpoint_path, read_checkpoint
-from gaspart.trajectory.opening import TRAJECTORY, partial_path
+from gaspart.trajectory.opening import TRAJECTORY, checkpoint_path, partial_path, read_checkpoint
 from gaspart.trajectory.recipe import read_recipe
 
 SCENE = gas(2, 10, 0.1)

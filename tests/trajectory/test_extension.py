@@ -8,8 +8,7 @@ from scenes import gas
 import gaspart as gp
 from gaspart.trajectory import recording, run
 from gaspart.trajectory import run as extension
-from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 from gaspart.trajectory.recipe import read_recipe
 
 MIXTURE = gp.Scene(

@@ -15,8 +15,7 @@ from gaspart.files import only_process
 from gaspart.trajectory import amber, opening, recording, run
 from gaspart.trajectory import run as stage
 from gaspart.trajectory.amber import stored_header
-from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 from gaspart.trajectory.recipe import multiple, read_recipe
 
 

@@ -13,8 +13,7 @@ from gaspart.errors import SceneError, SimulationError
 from gaspart.files import writing
 from gaspart.reproduction.jobs.replicas import write_replicas
 from gaspart.simulation import Simulation
-from gaspart.trajectory.checkpoint import checkpoint_path
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 
 SCENE = gas(2, 10, 0.1)
 RECIPE = (SCENE, gp.EventDriven(), 1, 2.0, 0.5)

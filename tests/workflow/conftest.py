@@ -5,7 +5,6 @@ from workspace import SMOKE, copy_of_project, keep_figures
 
 FEW = [
     "virial_discs",  # simulate
-    "wall_pressure",
     "speed_relaxation",  # with a film
     "ideal_boxes",  # measure_cost
     "fill_failures",  # fill

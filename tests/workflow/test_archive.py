@@ -179,20 +179,20 @@ def test_it_is_verified_in_another_folder(archive, tmp_path, monkeypatch, capsys
 def test_changed_missing_and_added_files_are_found(unpacked, tmp_path, capsys):
     assert lines(capsys, "verify", unpacked)[0] == 0
     flip(unpacked / TABLE)
-    (unpacked / "results/smoke/figures/wall_pressure.png").unlink()
+    (unpacked / "results/smoke/figures/reversibility.png").unlink()
     (unpacked / "results/smoke/figures/heating.png").touch()
     packed = shutil.make_archive(str(tmp_path / "packed"), "zip", unpacked)
     for path in (unpacked, packed):
         code, said = lines(capsys, "verify", path, "--rerun", 3)
         assert code == 1 and len(said) == 1
         assert f"changed or damaged: {TABLE}" in said[0]
-        assert "missing: results/smoke/figures/wall_pressure.png" in said[0]
+        assert "missing: results/smoke/figures/reversibility.png" in said[0]
         assert "not of the archive: results/smoke/figures/heating.png" in said[0]
 
 
 def test_claims_of_other_data_are_found_though_the_manifest_agrees(unpacked, capsys):
     name = "results/smoke/measurements/virial_discs.nc"
-    shutil.copy(unpacked / "results/smoke/measurements/wall_pressure.nc", unpacked / name)
+    shutil.copy(unpacked / "results/smoke/measurements/reversibility.nc", unpacked / name)
     state(unpacked, name)
     code, said = lines(capsys, "verify", unpacked)
     assert code == 1
@@ -274,7 +274,7 @@ def test_another_clone_starts_from_a_deposit(project, tmp_path, capsys):
 
 
 def test_a_run_that_is_not_complete_is_refused(project, capsys):
-    results, missing = project / "results/smoke", "results/smoke/figures/wall_pressure.png"
+    results, missing = project / "results/smoke", "results/smoke/figures/reversibility.png"
     (project / missing).rename(project / "aside")
     try:
         said = refused(capsys, project, results)

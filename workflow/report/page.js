@@ -51,12 +51,6 @@ const open = () => {
 addEventListener("hashchange", open);
 open();
 
-// Beside the page the contents are open.
-const wide = matchMedia("(min-width: 70rem)");
-const unfold = () => document.querySelectorAll("nav details").forEach(fold => { fold.open = wide.matches; });
-wide.addEventListener("change", unfold);
-unfold();
-
 // The name of a claim on its dot: under the pointer, with the keyboard (arrows move along a strip), and at the first tap.
 const name = document.createElement("div");
 name.id = "name";

@@ -100,8 +100,7 @@ def components(data: xr.Dataset, observable: str, start: float | None = None) ->
     """Estimate each component of an observable of `gaspart measure` from a trajectory. A scalar or a curve
     has one component, "".
     """
-    from gaspart.analysis.frames import measure_single
-    from gaspart.analysis.run import open_run
+    from gaspart.analysis.run import measure_single, open_run
 
     with open_run(data, start, sheared=True, varying=True) as run:
         if OBSERVABLES[observable].of_impulses:

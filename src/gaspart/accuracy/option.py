@@ -22,7 +22,7 @@ from gaspart.analysis.observables import OBSERVABLES, require_modelled
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory.conditions import Conditions
 from gaspart.trajectory.recipe import MOST_REPLICAS

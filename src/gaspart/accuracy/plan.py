@@ -25,7 +25,7 @@ from gaspart.analysis.pairs import MOST_FRAMES
 from gaspart.analysis.run import EQUILIBRATION
 from gaspart.engines import Engine
 from gaspart.keys.values import number
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe

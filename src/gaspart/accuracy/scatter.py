@@ -135,7 +135,6 @@ def _of_observable(target: Target, deviation: float) -> float:
 
 def _at_piston(scene: Scene) -> float:
     """Return the change of the density near a piston, divided by the mean density and the change of energy.
-
     The height h is proportional to the enthalpy, and fluctuates by h / sqrt(gamma N) at constant enthalpy
     (points; gamma = 1 + 2 / d). So the density falls from its mean by at most sqrt(gamma N / 2 pi) / h per
     length, where half of it is left. This half falls as 1 / h.

@@ -18,8 +18,7 @@ from gaspart.accuracy.target import Target
 from gaspart.analysis.observables import OBSERVABLES, observables_with
 from gaspart.engines import Engine
 from gaspart.errors import SceneError
-from gaspart.scene.facts import plain_gas
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas, plain_gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY

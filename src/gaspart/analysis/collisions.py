@@ -29,7 +29,7 @@ from gaspart.scene.boundaries import refuse_sheared
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.system import descriptor_path, memory
-from gaspart.theory.free_flights import free_time_pdf
+from gaspart.theory.enskog import free_time_pdf
 from gaspart.theory.geometry import unit_sphere_surface
 from gaspart.theory.speeds import mean_speed, mean_speed_factor
 from gaspart.trajectory.provenance import git_revision, versions
@@ -279,7 +279,7 @@ def free_flight_times(simulation: Simulation, bins: int = 40) -> Observable:
     """Measure the probability density of the time between two collisions of a particle.
 
     Uncertainties come from the scatter of 16 groups of particles. The uncertainty of an empty bin is NaN.
-    Theory exists for equal particles. The theoretical density is `free_flights.free_time_pdf`, which assumes
+    Theory exists for equal particles. The theoretical density is `enskog.free_time_pdf`, which assumes
     independent collisions. The theoretical mean free time and path are exact in equilibrium, apart from the
     uncertainty of the contact value. They include the correction for the finite number of particles.
 

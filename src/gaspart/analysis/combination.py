@@ -15,10 +15,9 @@ import xarray as xr
 
 from gaspart import analysis
 from gaspart.analysis.drift import Trend, describe, trends
-from gaspart.analysis.frames import measure_single, until_time
 from gaspart.analysis.observable import Observable
 from gaspart.analysis.observables import OBSERVABLES, observable_name
-from gaspart.analysis.run import Source
+from gaspart.analysis.run import Source, measure_single, until_time
 from gaspart.analysis.statistics import means_of
 from gaspart.engines import engine_from_dict, engine_to_dict
 from gaspart.errors import SceneError, short_repr

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 from gaspart.analysis.combination import replicas
 from gaspart.analysis.drift import drift_of
-from gaspart.analysis.frames import measure_single, open_frames, until_time
 from gaspart.analysis.observables import OBSERVABLES, observable_name
+from gaspart.analysis.run import measure_single, open_frames, until_time
 from gaspart.errors import SceneError
 from gaspart.trajectory.replicas import run_files
 

@@ -8,20 +8,21 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from gaspart import theory
+from gaspart import analysis, theory
 from gaspart.analysis.conditions import SLIDING, VARYING
 from gaspart.analysis.flow import Peculiar, about_the_flow, mean_motion, sum_squares
+from gaspart.analysis.observables import OBSERVABLES, require_selection
 from gaspart.analysis.run_data import ABOUT, FLOW, RunData
 from gaspart.engines import engine_to_dict
 from gaspart.errors import SceneError
 from gaspart.keys.values import count_of, number, one_of
 from gaspart.scene.boundaries import refuse_open, refuse_sheared
-from gaspart.scene.gas import Gas, Mixture
+from gaspart.scene.facts import Gas, Mixture
 from gaspart.scene.scene import Scene
 from gaspart.simulation import Simulation
 from gaspart.state.state import by_number
@@ -30,6 +31,12 @@ from gaspart.trajectory.correlator import PairCounter
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.run_options import tallies_to_json
 from gaspart.yaml_text import dump_yaml, parse_yaml
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gaspart.analysis.observable import Observable
+
 
 Source: TypeAlias = str | Path | xr.Dataset | Simulation
 
@@ -304,3 +311,45 @@ def with_frames(simulation: Simulation, rows: Sequence[dict[str, Any]]) -> xr.Da
             "tallies": tallies_to_json(simulation.tallies),
         },
     )
+
+
+def measure_single(
+    source: Source, name: str, start: float | None = None, end: float | None = None, **selection: Any
+) -> Observable:
+    """Measure an observable of one run by its name, without a remark on drifts; see `measuring.measure`."""
+    declared = OBSERVABLES[name]
+    require_selection(name, selection)
+    function = getattr(analysis, declared.function)
+    with until_time(source, end, declared.needs == "pairs") as part:
+        result: Observable = function(part, start=start, **declared.arguments, **selection)
+    return result
+
+
+@contextmanager
+def until_time(source: Source, end: float | None, pairs: bool = False) -> Iterator[Source]:
+    """Return the frames of a source up to `end`, with collisions of each pair of species if `pairs`."""
+    if end is None:
+        yield source
+        return
+    from gaspart.keys.values import number
+
+    with open_frames(source, pairs) as data:
+        time = data["time"].values
+        last = number("end", end, "must be a finite number")
+        count = int((time <= last + 1e-9 * abs(last)).sum())
+        if count < 2:
+            longest = float(time[-1]) if len(time) else 0.0
+            raise SceneError("end", end, f"leaves {count} frames of a run until time {longest:g}")
+        yield data.isel(frame=slice(count))
+
+
+@contextmanager
+def open_frames(source: Source, pairs: bool = False) -> Iterator[xr.Dataset]:
+    """Yield the frames of a source; they are read or computed only once."""
+    from gaspart.simulation import Simulation
+    from gaspart.trajectory.reading import open_trajectory
+
+    if isinstance(source, Simulation):
+        source = repeat_run(source, pairs)
+    with open_trajectory(source) if isinstance(source, str | Path) else nullcontext(source) as data:
+        yield data

@@ -10,10 +10,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.flow import mean_motion
-from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable, scalar
 from gaspart.analysis.observables import observables_with, selecting
-from gaspart.analysis.run import Run, Source, open_run, select_particles
+from gaspart.analysis.run import Run, Source, measure_single, open_run, select_particles
 from gaspart.analysis.run_data import FLOW
 from gaspart.errors import SceneError
 from gaspart.trajectory.reading import open_trajectory

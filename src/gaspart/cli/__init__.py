@@ -27,7 +27,7 @@ _COMMANDS = {
     "new": ("new", "write a scene file from a template"),
     "run": ("run", "run a scene and write its trajectory"),
     "resume": ("run", "finish a run that was cut short"),
-    "info": ("info", "contents and quality of a trajectory, and how to reproduce it"),
+    "info": ("check", "contents and quality of a trajectory, and how to reproduce it"),
     "measure": ("measure", "observables of a trajectory, with uncertainties and theory"),
     "render": ("view", "a picture (.png) or a film (.mp4, .gif) of a trajectory"),
     "film": ("view", "a film (.mp4, .gif) of a trajectory"),

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gaspart.analysis.frames import until_time
 from gaspart.analysis.measuring import measure
 from gaspart.analysis.observable import remark_of
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name, selecting, selections
+from gaspart.analysis.run import until_time
 from gaspart.analysis.run_data import ABOUT
 from gaspart.cli.arguments import (
     Parser,

@@ -20,7 +20,7 @@ from gaspart.scene.scene import Scene
 _FOLDER = Path(__file__).parent / "templates"
 _CHAPTERS = {
     "Gases and fluids": ("gas", "spheres", "rarefied", "brownian", "rough"),
-    "Walls": ("chambers", "plates", "slit", "piston", "shock", "divided", "adsorption", "sticky"),
+    "Walls": ("chambers", "osmosis", "plates", "slit", "piston", "shock", "divided", "adsorption", "sticky"),
     "Gravity": ("atmosphere", "separation"),
     "Heat and flow": (
         "heat",

@@ -13,7 +13,7 @@ import numpy as np
 from gaspart.analysis.observables import OBSERVABLES
 from gaspart.cli.arguments import Parser, list_names, real, set_command, several
 from gaspart.errors import SceneError
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.theory.mixtures import MIXTURE_THEORIES
 
 _PARTICLE = ("diameter", "temperature", "mass")

@@ -14,7 +14,7 @@ import numpy as np
 
 from gaspart.analysis.flow import sum_squares
 from gaspart.engines import Engine
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.sizes import ball_volume
 

@@ -24,7 +24,7 @@ from gaspart.analysis.pairs import pair_counts
 from gaspart.analysis.statistics import histogram_chi_square, mean_of
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.verdict import Check, compare_with_theory
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.sizes import ball_volume
 from gaspart.theory.bulk import EXACT, collision_rate
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST

@@ -87,9 +87,8 @@ EFFORTS = "efforts.yaml"
 
 
 def keep_efforts(config: dict[str, Any], points: str | Path) -> dict[str, float]:
-    """Raise the efforts of a merged config, in place, to those of the points in a folder, and return these.
-
-    A run of less effort would replace what was paid for. Raises SceneError for efforts that cannot be read.
+    """Raise the efforts of a merged config, in place, to those of the points in a folder, and return these. A
+    run of less effort would replace what was paid for. Raises SceneError for efforts that cannot be read.
     """
     return raise_efforts(config, read_efforts(Path(points)))
 
@@ -111,10 +110,7 @@ def effort_of(config: dict[str, Any], experiment: str) -> float:
 
 
 def read_efforts(points: Path) -> dict[str, float]:
-    """Return the effort of each experiment with points in a folder.
-
-    Raises SceneError.
-    """
+    """Return the effort of each experiment with points in a folder. Raises SceneError."""
     file = points / EFFORTS
     content = _read_mapping(file) if file.exists() else {}
     for name, effort in content.items():
@@ -205,8 +201,8 @@ def _read_numbers(block: Any, held: list[Any]) -> None:
 
 
 def origin(key: str, config: dict, contents: list[tuple[str, Any]]) -> str | None:
-    """Return the last file that contains a key, or the longest beginning of the key. Each file comes with its
-    contents. If no file contains the value, the option of Snakemake is returned.
+    """Return the last file that contains a key, or the longest beginning of the key. If no file contains the
+    value, it is the option of Snakemake.
     """
     parts = key.replace("[", ".").split(".")
     # the key `scene.` and its remainder are one key
@@ -371,9 +367,7 @@ def _user_modules(config: dict) -> tuple[tuple[str, str], ...]:
 
 
 def _check_caption(figure: str, block: dict) -> None:
-    """Raise SceneError for a caption that the report cannot show. The text is parsed if docutils is
-    installed. It is installed wherever the report is made.
-    """
+    """Raise SceneError for a caption that the report cannot show, if docutils is installed to parse it."""
     text = registry.caption(block)
     fault = place_fault(text)
     if not fault and find_spec("docutils"):
@@ -398,9 +392,7 @@ def _animation(config: dict, animation: str, block: dict) -> None:
 
 
 def checked_points(config: dict, experiment: str) -> dict[str, Point]:
-    """Return the points of an experiment, by name, after a check of every point. Each value of the grid is
-    checked too.
-    """
+    """Return the points of an experiment, by name, after a check of every point and value of the grid."""
     points = gridded_points(config, experiment)
     for point in points.values():
         check_point(point)
@@ -408,9 +400,7 @@ def checked_points(config: dict, experiment: str) -> dict[str, Point]:
 
 
 def gridded_points(config: dict, experiment: str) -> dict[str, Point]:
-    """Return the points of an experiment, by name, after a check of its grid. Each value of the grid is
-    checked alone, without the other keys.
-    """
+    """Return the points of an experiment, by name, after each value of its grid is checked alone."""
     where = f"experiments.{experiment}"
     for key, value in _grid_values(config["experiments"][experiment].get("grid")):
         if key.startswith(point_keys.PREFIX):  # a value of a scene file; the scene validates it

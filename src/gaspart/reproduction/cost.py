@@ -23,7 +23,7 @@ from gaspart.reproduction.config import open_config
 from gaspart.reproduction.figure import find_parts
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.container import Container
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.simulation import Simulation
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 
 def predict(path: str) -> list[str]:
-    """Predict the core-hours of each experiment of a config on this machine, as lines of text. The last line
-    is the sum. A config next to `config.yaml` is merged over it, as in the workflow.
+    """Predict core-hours by experiment of a config, merged as in the workflow, on this machine, and their
+    sum.
     """
     lines, total, unknown = [], 0.0, []
     with open_config(path) as (_, planned):
@@ -54,9 +54,7 @@ def predict(path: str) -> list[str]:
 
 
 def predicted_seconds(point: Point) -> float | None:
-    """Predict the CPU time of a point's simulations from the theoretical number of collisions. None if this
-    number is unknown.
-    """
+    """Predict the CPU time of a point from the theoretical number of collisions; None if unknown."""
     if point.job != "simulate":
         return None
     gas = point.scene.gas
@@ -88,9 +86,7 @@ def predicted_seconds(point: Point) -> float | None:
 
 
 def _speed(gas: Gas, engine: str, precision: str) -> float:
-    """Return the relative speed at the nearest power of ten of the particle number. Only these particle
-    numbers were timed.
-    """
+    """Return the relative speed at the nearest power of ten, as timed, of the particle number."""
     return speed_factor(gas.dimension, engine, precision, 10 ** round(math.log10(max(gas.count, 10))))
 
 
@@ -106,8 +102,8 @@ _COLUMNS = ("figure", "cpu_seconds", "shared_seconds", "claim", "verdict", "requ
 
 @dataclass(frozen=True)
 class Need:
-    """Claim with its `required` and its `reached` uncertainty. A measurement longer by the factor `multiple`
-    would just decide the claim.
+    """Claim with its `required` and `reached` uncertainty, decided by a measurement `multiple` times
+    as long.
     """
 
     claim: str
@@ -143,8 +139,8 @@ class Budget:
 
 
 def budgets(path: str | Path) -> list[Budget]:
-    """Return the budget of each figure of a finished config, the most expensive figure first. Raises
-    SceneError for an invalid config, and if a figure or a time is missing.
+    """Return the budgets of a finished config's figures, the dearest first; SceneError if something is
+    missing.
     """
     import xarray as xr
 
@@ -170,10 +166,9 @@ def budgets(path: str | Path) -> list[Budget]:
 
 
 def lines(path: str | Path, target: str | Path | None = None, progress: bool = False) -> list[str]:
-    """Return the lines of `gaspart budget` for a config: budgets, or the progress of the workflow.
-
-    If `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same
-    errors as `budgets`.
+    """Return the lines of `gaspart budget` for a config: budgets, or the progress of the workflow. If
+    `target` is a CSV file, the budget is written to this file, a line for each claim. Raises the same errors
+    as `budgets`.
     """
     if progress:
         return _progress(path)
@@ -191,9 +186,8 @@ def lines(path: str | Path, target: str | Path | None = None, progress: bool = F
 
 
 def _progress(path: str | Path) -> list[str]:
-    """Return a line for each figure: its points that are made and left, and the CPU time of those left.
-
-    The time of a point is that of its experiment's other points, or the predicted one; or it is unknown.
+    """Return a line for each figure: its points that are made and left, and the CPU time of those left. The
+    time of a point is that of its experiment's other points, or the predicted one; or it is unknown.
     """
     with open_config(path) as (config, planned):
         results = Path("results") / (config.get("run") or "")

@@ -43,7 +43,6 @@ class Open:
 
 def decide(path: str | Path) -> list[str]:
     """Write the efforts of the next run beside the points, and return lines that say which and how long.
-
     `path` is the config of a finished run. Without a claim that more effort could decide nothing is written,
     and the list is empty. Raises SceneError if a figure has not been made.
     """
@@ -69,9 +68,7 @@ def decide(path: str | Path) -> list[str]:
 def find_open(
     figure: str, block: Mapping[str, Any], dataset: xr.Dataset, present: Mapping[str, float]
 ) -> list[Open]:
-    """Return the claims of a figure that more effort could decide. `present` is the effort of each
-    experiment.
-    """
+    """Return the claims of a figure that more effort than `present` could decide."""
     stated = claims_of(figure, block, dataset)
     names = block["experiments"]
     larger = {name: claims_of(figure, block, with_larger_errors(dataset, name)) for name in names}

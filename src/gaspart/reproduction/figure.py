@@ -67,8 +67,8 @@ def find_parts(module: str, name: str) -> Parts:
 
 
 def content_key(paths: Iterable[str | Path], *stated: Any) -> str:
-    """Return a digest of files, of those in folders too, and of plain values. A data set with this key was
-    made from the same content: it need not be measured again.
+    """Return a digest of files, in folders too, and values: an equal key means that nothing must be
+    measured.
     """
     key = hashlib.sha256(json.dumps(stated).encode())
     for path in map(Path, paths):
@@ -165,9 +165,7 @@ COUNTED = ("collisions", "pair_tests", "box_visits", "crossings", "steps")
 
 
 def series_of(run: Run) -> Series:
-    """Return the series of a run of a plain gas in a periodic container. Raises SceneError for any other
-    scene.
-    """
+    """Return the series of a run of a plain gas in a periodic container; SceneError otherwise."""
     gas = plain_gas(run.scene)
     thermal = math.sqrt(run.temperature * run.freedom / (gas.dimension * gas.count * gas.mass))
     energy = float(run.data["kinetic_energy"].mean())

@@ -97,11 +97,6 @@ class Accuracy(Requirement):
         Accuracy
             The accuracy.
 
-        Raises
-        ------
-        SceneError
-            If a value is invalid.
-
         Examples
         --------
         >>> import gaspart as gp

@@ -15,7 +15,7 @@ from gaspart.accuracy.reached import AccuracyStatus, Examiner
 from gaspart.engines import Engine, resolve_engine
 from gaspart.errors import SceneError
 from gaspart.files import is_same_file, output_path
-from gaspart.keys.classes import field_values
+from gaspart.keys.kinds import field_values
 from gaspart.keys.values import count_of
 from gaspart.runs.ending import (
     Accuracy,
@@ -28,10 +28,9 @@ from gaspart.scene.scene import Scene, require_scene
 from gaspart.state.optional_tallies import OptionalTally
 from gaspart.state.state import State
 from gaspart.trajectory import run as trajectory
-from gaspart.trajectory.checkpoint import checkpoint_path
 from gaspart.trajectory.correlator import Correlations
 from gaspart.trajectory.export import last_state
-from gaspart.trajectory.opening import partial_path
+from gaspart.trajectory.opening import checkpoint_path, partial_path
 from gaspart.trajectory.recipe import MOST_REPLICAS, Recipe
 from gaspart.trajectory.recording import Progress
 from gaspart.trajectory.replicas import find_run, in_replicas, replica_paths

@@ -1,4 +1,4 @@
 """Simulated system: container, species, walls, faces and collision law.
 
-A scene is validated when it is created.
+A scene and its parts are validated when they are created: invalid values raise SceneError.
 """

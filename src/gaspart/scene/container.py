@@ -28,11 +28,6 @@ def _lengths(name: str, value: Any) -> tuple[float, ...]:
 class Container:
     """The simulated volume [0, L] on each axis, in two or three dimensions.
 
-    Raises
-    ------
-    SceneError
-        If a length is not positive, or a boundary condition is unknown.
-
     Examples
     --------
     >>> import gaspart as gp

@@ -41,11 +41,6 @@ class Vibrating(Surface):
     / period. At the end of each period it returns instantaneously. Contacts follow the collision law of the
     scene in the frame of the wall.
 
-    Raises
-    ------
-    SceneError
-        If a value is invalid.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -249,11 +244,6 @@ class LeesEdwards(Surface):
     -shear_rate L_y t, and its v_x is reduced by shear_rate L_y. For a particle that leaves at y_low the signs
     are reversed. The initial velocities are the sum of the velocity of the flow and random velocities with
     mean 0. The faces do work, which heats an elastic gas.
-
-    Raises
-    ------
-    SceneError
-        If the shear rate is not a finite number.
 
     Examples
     --------

@@ -123,11 +123,6 @@ class Thermostat:
     particles, so that the total momentum is conserved. For short intervals this is white noise of strength
     xi_0^2 = 2 power/(d m).
 
-    Raises
-    ------
-    SceneError
-        If a value is not positive.
-
     Examples
     --------
     >>> import gaspart as gp

@@ -202,11 +202,6 @@ class Well(Surface):
     A particle leaves the well if the energy of its normal velocity, m v_n^2 / 2, exceeds `depth`. Otherwise
     it is reflected back into the well.
 
-    Raises
-    ------
-    SceneError
-        If a value is not positive.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -254,11 +249,6 @@ class Sticky(Surface):
     velocity is added to the vibration. Once the energy of the vibration reaches p^2 / 2m, the particle leaves
     the wall with this energy. No potential binds the particle, so that sticking is not the exact reverse of
     leaving: detailed balance is broken.
-
-    Raises
-    ------
-    SceneError
-        If the momentum is not positive.
 
     Examples
     --------

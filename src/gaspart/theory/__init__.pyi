@@ -25,10 +25,16 @@ from gaspart.theory.finite_size import finite_contact_value as finite_contact_va
 from gaspart.theory.geometry import number_density as number_density
 from gaspart.theory.geometry import packing_fraction as packing_fraction
 from gaspart.theory.geometry import particle_volume as particle_volume
+from gaspart.theory.granular import bed_height as bed_height
+from gaspart.theory.granular import bed_loss as bed_loss
 from gaspart.theory.granular import cooling_rate as cooling_rate
 from gaspart.theory.granular import driven_temperature as driven_temperature
 from gaspart.theory.granular import fourth_cumulant as fourth_cumulant
 from gaspart.theory.granular import haff_time as haff_time
+from gaspart.theory.granular import rough_ratio as rough_ratio
+from gaspart.theory.granular import rough_temperatures as rough_temperatures
+from gaspart.theory.granular import sawtooth_temperature as sawtooth_temperature
+from gaspart.theory.granular import sine_temperature as sine_temperature
 from gaspart.theory.gravity import hydrostatic_profiles as hydrostatic_profiles
 from gaspart.theory.gravity import ideal_profile as ideal_profile
 from gaspart.theory.heat import conducting_slab as conducting_slab
@@ -51,8 +57,6 @@ from gaspart.theory.packing import crystal_finite_size_correction as crystal_fin
 from gaspart.theory.packing import etomica_crystal as etomica_crystal
 from gaspart.theory.packing import failures_per_particle as failures_per_particle
 from gaspart.theory.packing import insertion_saturation as insertion_saturation
-from gaspart.theory.rough import rough_ratio as rough_ratio
-from gaspart.theory.rough import rough_temperatures as rough_temperatures
 from gaspart.theory.shear import free_molecular_stress as free_molecular_stress
 from gaspart.theory.shear import slip_flow_stress as slip_flow_stress
 from gaspart.theory.speeds import KURTOSIS_RELAXATION_RATE as KURTOSIS_RELAXATION_RATE
@@ -79,10 +83,6 @@ from gaspart.theory.tables import literature as literature
 from gaspart.theory.tables import measurements as measurements
 from gaspart.theory.tables import packing_fraction_at as packing_fraction_at
 from gaspart.theory.tables import small_systems as small_systems
-from gaspart.theory.vibrated import bed_height as bed_height
-from gaspart.theory.vibrated import bed_loss as bed_loss
-from gaspart.theory.vibrated import sawtooth_temperature as sawtooth_temperature
-from gaspart.theory.vibrated import sine_temperature as sine_temperature
 from gaspart.theory.virial import partial_sum as partial_sum
 from gaspart.theory.virial import virial_coefficients as virial_coefficients
 from gaspart.theory.walls import wall_pressure as wall_pressure

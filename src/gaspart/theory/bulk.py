@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gaspart import theory
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.theory.diffusion import ERPENBECK_WOOD_HIGHEST, viscosity_ratio
 from gaspart.theory.discretisation import contact_values
 

@@ -183,11 +183,9 @@ def gravity_column(scene: Scene) -> GravityColumn | None:
 def relative_change(
     observable: str, low: Column, high: Column, middle: Column, top: bool | None = None
 ) -> float:
-    """Compute the change of an observable between two columns, relative to a third column.
-
-    observable : one of `COMPARED`, or "pressure". For a density, the root mean square of the change is
-        computed.
-    top : for a pressure, True for the top and False for the floor.
+    """Compute the change of an observable between two columns, relative to a third column. `observable`: one
+    of `COMPARED`, or "pressure". For a density, the root mean square of the change is computed. `top`: for a
+    pressure, True for the top and False for the floor.
     """
     if observable == "density":
         profiles = [

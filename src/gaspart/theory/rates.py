@@ -55,11 +55,9 @@ Kinds: TypeAlias = Sequence[Species | Particle]
 
 def rates(scene: Scene, dense: bool, instead: Kinds | None = None) -> Rates:
     """Compute the collision rates of a scene in its initial state. If the faces are hotter than the
-    particles, the temperature of the faces is used.
-
-    dense : True to use the contact values of a dense gas
-    instead : representative kinds of particles that replace the kinds of the scene, because each pair of
-        kinds is evaluated
+    particles, the temperature of the faces is used. `dense`: True to use the contact values of a dense gas.
+    `instead`: representative kinds of particles that replace the kinds of the scene, because each pair of
+    kinds is evaluated.
     """
     d, kinds = scene.dimension, scene.moving_kinds if instead is None else instead
     heat = max(scene.face_temperatures, default=0.0)

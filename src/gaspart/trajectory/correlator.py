@@ -61,11 +61,6 @@ class Correlations:
     stress : bool, default False
         Correlate the stress tensor and the heat flux instead of the velocities.
 
-    Raises
-    ------
-    SceneError
-        If a value is invalid.
-
     Examples
     --------
     >>> import gaspart as gp
@@ -118,11 +113,6 @@ class Correlations:
         -------
         Correlations
             The correlations.
-
-        Raises
-        ------
-        SceneError
-            If a value is invalid.
         TypeError, ValueError
             If the text does not describe correlations.
         """

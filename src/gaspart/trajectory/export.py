@@ -22,8 +22,7 @@ from gaspart.state.insertion import per_particle
 from gaspart.state.state import State
 from gaspart.system import descriptor_path
 from gaspart.trajectory import amber
-from gaspart.trajectory.checkpoint import kept_beside
-from gaspart.trajectory.opening import check_frames, open_netcdf_file, open_verified, run_path
+from gaspart.trajectory.opening import check_frames, kept_beside, open_netcdf_file, open_verified, run_path
 from gaspart.trajectory.reading import open_trajectory
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of

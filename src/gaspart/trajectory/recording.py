@@ -17,8 +17,8 @@ from gaspart.simulation import Simulation
 from gaspart.state.state import State, by_number
 from gaspart.trajectory import amber
 from gaspart.trajectory.amber import Frames
-from gaspart.trajectory.checkpoint import checkpoint_path, write_checkpoint
 from gaspart.trajectory.correlator import PairCounter, correlator_for
+from gaspart.trajectory.opening import checkpoint_path, write_checkpoint
 from gaspart.trajectory.recipe import Recipe, multiple
 from gaspart.trajectory.run_options import examined_before, examined_from, is_examined
 

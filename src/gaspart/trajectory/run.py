@@ -26,25 +26,23 @@ from gaspart.keys.values import number
 from gaspart.simulation import Simulation
 from gaspart.trajectory import amber, provenance
 from gaspart.trajectory.amber import Frames, frame_count, frames_of
-from gaspart.trajectory.checkpoint import (
-    CHECKPOINT,
-    Checkpoint,
-    checkpoint_path,
-    kept_beside,
-    read_checkpoint,
-    remove_checkpoint,
-    write_checkpoint,
-)
 from gaspart.trajectory.native_kernels import replace_shipped_kernels
 from gaspart.trajectory.opening import (
+    CHECKPOINT,
     TRAJECTORY,
     UNFINISHED,
+    Checkpoint,
     check_frames,
+    checkpoint_path,
     is_blank,
+    kept_beside,
     open_locked,
     open_verified,
     partial_path,
+    read_checkpoint,
+    remove_checkpoint,
     run_path,
+    write_checkpoint,
     writing,
 )
 from gaspart.trajectory.recipe import Recipe, begun_as, read_recipe, stored_revision

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numba
 import numpy as np
+import pytest
 from numba.core.runtime import _nrt_python, rtsys
 
 from gaspart.kernels.compile import policy as compilation
@@ -139,6 +140,7 @@ def simulated(*others, cache=None):
     return done.stdout.split(), kept
 
 
+@pytest.mark.thorough
 def test_the_oldest_numba_that_is_allowed_gives_the_same_bits_and_keeps_its_kernels(tmp_path):
     """The locked release is the newest one: the upper bound of pyproject.toml."""
     release = OLDEST.read_text().partition("\nnumba==")[2].split()[0]

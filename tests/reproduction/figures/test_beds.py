@@ -53,6 +53,7 @@ def test_contacts_are_those_of_discs_and_walls():
     assert count_contacts(scene, positions, radii, 0.99 * apart) == 4
 
 
+@pytest.mark.thorough
 def test_piles_and_flows_are_read(tmp_path):
     points = [
         made(tmp_path, "pile", pile(contact_duration=0.005), duration=30.0, samples=60),
@@ -79,6 +80,7 @@ def test_piles_and_flows_are_read(tmp_path):
         assert ds["rate"][n] == pytest.approx(-slope, rel=0.3)
 
 
+@pytest.mark.thorough
 def test_a_flow_that_ends_too_early_is_refused(tmp_path):
     point = made(tmp_path, "short", hopper(), duration=1.0, samples=4, boxes_per_side=[8, 140], replicas=1)
     with pytest.raises(ValueError, match="duration"):
@@ -111,6 +113,7 @@ def bed(waveform, count=20):
     )
 
 
+@pytest.mark.thorough
 def test_the_flows_of_energy_and_the_profile_of_a_bed(tmp_path):
     """A sawtooth gives its speed times the weight; what it gives is lost in contacts."""
     point = made(tmp_path, "bed", bed("sawtooth"), duration=600.0, samples=60, equilibration=200.0)
@@ -127,6 +130,7 @@ def test_the_flows_of_energy_and_the_profile_of_a_bed(tmp_path):
     assert ds["density"][0] > 2.0 * ds["density"][4] > 0.0
 
 
+@pytest.mark.interpreted
 def test_a_frame_of_known_places_and_velocities(tmp_path):
     """Two discs at rest beside one another that fall from a known height, far above the floor."""
     particles = [gp.Particle((2.0 + 4.0 * n, 50.5), ((3.0, -1.0)[n], 0.0), 0.5) for n in range(2)]

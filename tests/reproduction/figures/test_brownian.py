@@ -82,6 +82,7 @@ def test_friction_diffusion_and_equipartition_of_known_paths(made_up):
     assert float(ds["msd"][late]) == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.thorough
 def test_a_light_particle_is_expected_to_move_as_the_linear_boltzmann_equation_states(made_up):
     """In Maxwell's gas near Langevin's equation; with less energy, and less far, in one of equal speeds."""
     equal_speeds = {"scene.species.0.temperature": None, "scene.species.0.speed": 3**0.5}
@@ -122,6 +123,7 @@ def test_ends_of_paths(made_up):
     assert ratio == pytest.approx(29.0 / 28.5, abs=4 * np.sqrt(2 / 600))
 
 
+@pytest.mark.thorough
 def test_both_engines_move_the_sources_sphere_along_one_path():
     """From one start the paths differ by rounding only, which grows about fifteenfold in 30 units of time: no
     contact is missed, not even of the huge sphere. Seeds 0 to 5 have 1e-10 to 3e-9 after 60."""

@@ -69,7 +69,16 @@ def others(dataset):
         yield dataset.isel({dim: slice(size // 2)})
 
 
-SLOW = {"barometric", "box_count", "brownian_msd", "couette", "estimators", "msd_spheres", "time_to_accuracy"}
+SLOW = {
+    "adsorption",
+    "barometric",
+    "box_count",
+    "brownian_msd",
+    "couette",
+    "estimators",
+    "msd_spheres",
+    "time_to_accuracy",
+}
 STAYING = {
     "sticky rule: power of the gas' density in the coverage of a wall at low coverage (at most 0.2)",
     "mean of these deviations, signed",

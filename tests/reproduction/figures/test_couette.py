@@ -49,6 +49,7 @@ def measured(one):
     return couette.measure([one], SETTINGS).isel(point=0)
 
 
+@pytest.mark.thorough
 def test_a_flow_has_the_stress_of_its_knudsen_number(point):
     """0.286 of free flight's by the viscosity with slip, and a few per cent more by heating."""
     row = measured(point("flows", "u1.5", between_walls(1.5), **DSMC))
@@ -80,6 +81,7 @@ def test_numbers_of_an_exact_flow(point):
     assert max(abs(found[f"normal_{axis}"]) for axis in "xyz") < 1e-12
 
 
+@pytest.mark.thorough
 def test_a_sheared_gas_has_enskogs_viscosity(point):
     scene = {
         "container": {"lengths": [10.0, 10.0, 10.0], "boundary": "periodic"},

@@ -103,6 +103,7 @@ def test_number_variance_of_equal_cells_is_zero_and_of_one_cell_is_largest():
     assert cooling.number_variance(Run(scene, np.arange(2.0), positions), 2) == pytest.approx([0.0, 6.0])
 
 
+@pytest.mark.thorough
 def test_a_driven_gas_is_at_the_temperature_of_the_energy_balance(tmp_path):
     scene = replace(
         scenes.gas(2, 128, 0.02), restitution=gp.Restitution(0.6), thermostat=gp.Thermostat(0.03, 0.25)

@@ -78,6 +78,7 @@ def test_the_pressure_is_the_mean_over_each_bin_of_the_weight_above():
     assert above == pytest.approx([(0.5 * 6 + 0.5 * 5 + 1.0 * 4) / 2.0, 1.25 * 4 / 2.0])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
     scene = gp.Scene(
@@ -97,6 +98,7 @@ def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
     assert float(ds["density"].sel(species=1)[0]) > 2.0 * float(ds["density"].sel(species=1)[-1])
 
 
+@pytest.mark.interpreted
 def test_fewer_frames_than_stretches_are_refused(tmp_path):
     scene = gp.Scene(gp.Container((4.0, 4.0)), [gp.Species(5, 0.1, temperature=1.0)], gravity=(0.0, -1.0))
     scene.to_file(tmp_path / "scene.yaml")
@@ -145,6 +147,7 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(source_column, mon
     assert gravity.layer_fractions(source_column, 2)["share"][0] == pytest.approx([1.0, 0.5])
 
 
+@pytest.mark.thorough
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(source_column, tmp_path):
     settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3}
     own = replace(source_column, experiment="column_source")

@@ -40,6 +40,7 @@ def test_the_gap_is_where_centres_can_be():
     assert Gap.of(gas(10, 0.5)) == Gap(length=10.0, area=36.0, hot=2.0, cold=1.0, dimension=3)
 
 
+@pytest.mark.thorough
 def test_what_the_walls_give_is_what_the_particles_gain(tmp_path):
     point = run(tmp_path, gas(20, 0.1), duration=200.0, equilibration=20.0, samples=40)
     found = averages(point, Gap.of(gas(20, 0.1)), blocks=8, bins=4)
@@ -64,6 +65,7 @@ def test_the_flux_is_without_what_the_particles_store():
     assert found.wall_ratio().value == pytest.approx(600.0 / (600.0 + change.sum()))
 
 
+@pytest.mark.thorough
 def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
     """Halves at one temperature."""
     point = run(tmp_path, gas(100, 0.5), duration=20.0, equilibration=5.0, samples=8, boxes_per_side=1)
@@ -75,6 +77,7 @@ def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
     assert found["approach_error"][0] == pytest.approx(1.4 * np.sqrt(2.0 * 2.0 / (3.0 * 50.0)), rel=0.15)
 
 
+@pytest.mark.thorough
 def test_a_thin_gas_carries_what_free_flight_does(tmp_path):
     """Uniform too, with the temperature sqrt(T1 T2) of two half Maxwellians."""
     point = run(tmp_path, gas(40, 0.01), duration=6000.0, equilibration=100.0, samples=400)
@@ -104,6 +107,7 @@ def test_the_jump_of_a_made_up_profile_comes_back():
     assert found == pytest.approx(0.5 * (hot + cold), rel=1e-3)
 
 
+@pytest.mark.thorough
 def test_a_dense_gas_is_compared_with_fourier(tmp_path):
     point = run(tmp_path, gas(100, 0.5), duration=300.0, equilibration=100.0, samples=60, boxes_per_side=1)
     ds = heat_conduction_gas.measure([point], {"bins": 5, "blocks": 12, "clear": 1}).isel(point=0)
@@ -118,6 +122,7 @@ def test_a_dense_gas_is_compared_with_fourier(tmp_path):
         heat_conduction_gas.measure([point], {"bins": 5, "blocks": 1000, "clear": 1})
 
 
+@pytest.mark.thorough
 def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     """Whatever they began with; two temperatures give the heat capacity."""
     points = []
@@ -138,6 +143,7 @@ def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
     assert float(ds["slope"]) == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.thorough
 def test_scatterers_on_a_grid_are_distinguished_from_electrons(tmp_path):
     """The scatterers come first; they and the electrons take the temperature of the walls."""
     faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(2.0))
@@ -155,6 +161,7 @@ def test_scatterers_on_a_grid_are_distinguished_from_electrons(tmp_path):
         assert np.all(np.abs(found.value / value - 1.0) < 0.07)
 
 
+@pytest.mark.thorough
 def test_replicas_with_other_places_of_scatterers_are_one_block_each(tmp_path):
     """Their scatter is the uncertainty of the flux, which stretches of one run do not have."""
     faces = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(1.0)}

@@ -33,6 +33,7 @@ def test_overlaps_across_a_face_and_with_a_large_particle():
     assert pictures.overlapping(places, radii, CUBE, (True, False, False)) == 3
 
 
+@pytest.mark.thorough
 def test_a_scene_is_counted_and_kept_for_drawing(tmp_path):
     settings = {
         "scene": "config/scenes/brownian.yaml", "scene.species.0.count": 200, "duration": 2.0, "samples": 1,

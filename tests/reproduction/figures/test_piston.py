@@ -16,6 +16,7 @@ from gaspart.theory.state import adiabatic_temperature
 CONTAINER = gp.Container((20.0, 10.0), ("wall", "periodic"))
 
 
+@pytest.mark.interpreted
 def test_one_disc_and_its_piston(tmp_path):
     """The disc, at rest in the middle, is not met; the piston falls freely."""
     scene = gp.Scene(

@@ -53,12 +53,14 @@ def dataset(tmp_path_factory):
     return measure(points, {})
 
 
+@pytest.mark.thorough
 def test_series_are_recognised(dataset):
     fixed = (dataset["series"] == "packing fraction").values
     assert fixed.tolist() == [True] * 3 + [False] * 3 + [True] * 2 + [False] * 2
     assert dataset["engine"].values.tolist() == ["event"] * 6 + ["step"] * 4
 
 
+@pytest.mark.thorough
 def test_counts_are_as_predicted(dataset):
     event, step = dataset.isel(point=slice(0, 6)), dataset.isel(point=slice(6, 10))
     assert np.all(np.abs(event["crossings"] - 1.0) < 4.0 * event["crossings_error"])
@@ -66,6 +68,7 @@ def test_counts_are_as_predicted(dataset):
     assert step["pair_tests"].values == pytest.approx(step["pair_tests_expected"].values, rel=0.03)
 
 
+@pytest.mark.thorough
 def test_z_is_that_of_the_packing_fraction(dataset):
     event = dataset.isel(point=slice(0, 6))
     assert np.all(np.abs(event["Z"] - event["reference"]) < 4.0 * event["Z_error"])

@@ -18,7 +18,7 @@ from gaspart.reproduction.figures import speed_accuracy, time_to_accuracy
 from gaspart.reproduction.figures._tradeoff import ENGINES, PARTS, Choice
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
 SETTINGS = {"order_up_to": 0.2, "cells": []}

@@ -44,6 +44,7 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
             assert abs(float(row["bulk"]) - 1.0) < 4.5 * float(row["bulk_error"]) + 0.03
 
 
+@pytest.mark.thorough
 def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
     """Dilute discs in two small containers: growths are noise, the curves those of `coefficient`."""
     short = {"dimension": 2, "replicas": 4, "samples": 200, "collisions_per_particle": 200}

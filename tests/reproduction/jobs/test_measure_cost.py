@@ -128,6 +128,7 @@ def test_parts_of_a_step_need_an_engine_with_steps():
         _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).engines
 
 
+@pytest.mark.thorough
 def test_several_cores_have_the_bits_of_one_and_are_timed_by_the_wall():
     alone = {"scene": GAS, "engines": [TimeStepped(0.01)]}
     for engine, extras in (TimeStepped(0.01, threads=2), {}), (TimeStepped(0.01), {"copies": 2}):

@@ -93,7 +93,7 @@ def test_a_scene_whose_big_particle_stands_beside_the_boxes_is_warmed_with_all_i
     ("job", "settings"),
     [
         ("simulate", {"boundary": ["periodic", "wall"]}),
-        ("measure_cost", {"engine": "step", "time_step": 0.1, "precision": "float32"}),
+        ("measure_cost", {"engine": "step", "time_step": 0.1}),
         ("fill", {"boundary": "periodic", "dimension": 3}),
     ],
 )

@@ -14,7 +14,7 @@ from gaspart.analysis import observables
 from gaspart.analysis.run import Run
 from gaspart.analysis.run_data import FLOW
 from gaspart.engines import Engine, engine_from_dict
-from gaspart.scene.gas import Mixture
+from gaspart.scene.facts import Mixture
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.scene.surfaces import Thermal

@@ -21,7 +21,7 @@ from gaspart.analysis.expected.equilibrium import (
 )
 from gaspart.analysis.run import Run
 from gaspart.engines import Engine
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.theory import bulk
 from gaspart.theory.bulk import BOLTZMANN, ENSKOG, EXACT

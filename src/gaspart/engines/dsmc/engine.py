@@ -40,11 +40,6 @@ class DSMC(DsmcSettings):
 
     Literature: J. M. Montanero and A. Santos, Phys. Rev. E 54, 438 (1996); Phys. Fluids 9, 2057 (1997).
 
-    Raises
-    ------
-    SceneError
-        If a setting is invalid.
-
     See Also
     --------
     EventDriven : Exact collisions of hard particles.

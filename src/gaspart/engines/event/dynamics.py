@@ -24,13 +24,18 @@ from gaspart.engines.event.tally import (
 )
 from gaspart.engines.features.faces import (
     FacesPart,
+    MovingWallPart,
     OpenPart,
     PistonPart,
     VibratingPart,
+    WarmWallsPart,
     crowded_error,
     has_special_faces,
+    interior_walls,
+    moving_wall_of,
     reservoirs_of,
     special_faces,
+    warm_walls,
     with_room,
 )
 from gaspart.engines.features.law import (
@@ -51,13 +56,6 @@ from gaspart.engines.features.part import (
     write_parts,
 )
 from gaspart.engines.features.tallies import EventPerAreaPart
-from gaspart.engines.features.walls import (
-    MovingWallPart,
-    WarmWallsPart,
-    interior_walls,
-    moving_wall_of,
-    warm_walls,
-)
 from gaspart.errors import SimulationError
 from gaspart.kernels.event import loop, prediction
 from gaspart.kernels.event import neighbour_lists as lists

@@ -30,11 +30,6 @@ class TimeStepped(StepSettings):
 
     Literature: Frederickx and Meerts (2010).
 
-    Raises
-    ------
-    SceneError
-        If a setting is invalid.
-
     See Also
     --------
     EventDriven : Exact collisions of hard particles.

@@ -19,36 +19,44 @@ from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
 from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
 PLACES = 4  # number of particles of a box that are listed at once
+ROW = 8  # numbers of a particle: position, velocity, clock, radius
 _DOUBLE, _INT, _WORD = ir.DoubleType(), ir.IntType(32), ir.IntType(64)
 _STAGES = (  # stages of a transposition: pairs of rows, shuffled within quarters, or by quarters
     (1, [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]),
     (2, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
     (4, [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]),
 )
+_STEPS = [step for step, *_ in reversed(_STAGES) if step < WIDTH]
 
 
 def load_rows(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> list[Lanes]:
-    """Load the rows of eight particles as eight columns."""
-    vector = ir.VectorType(_DOUBLE, WIDTH)
+    """Load the rows of WIDTH particles as columns."""
+    vector = ir.VectorType(_DOUBLE, ROW)
     rows = []
     for index in indices:
-        address = builder.gep(data, [builder.mul(index, _WORD(WIDTH))])
+        address = builder.gep(data, [builder.mul(index, _WORD(ROW))])
         rows.append(builder.load(builder.bitcast(address, vector.as_pointer()), align=8))
-    for step, *halves in _STAGES:
+    for step, *halves in _STAGES[: len(_STEPS)]:
         swapped = list(rows)
         for n in range(WIDTH):
             if not n & step:
                 for row, mask in zip((n, n + step), halves, strict=True):
-                    which = ir.Constant(ir.VectorType(_INT, WIDTH), mask)
+                    which = ir.Constant(ir.VectorType(_INT, ROW), mask)
                     swapped[row] = builder.shuffle_vector(rows[n], rows[n + step], which)
         rows = swapped
+    if WIDTH < ROW:
+        parts = [[k - k % WIDTH + n for n in range(WIDTH)] for k in range(ROW)]
+        masks = [ir.Constant(ir.VectorType(_INT, WIDTH), part) for part in parts]
+        rows = [
+            builder.shuffle_vector(rows[k % WIDTH], rows[k % WIDTH], mask) for k, mask in enumerate(masks)
+        ]
     return [Lanes(builder, row) for row in rows]
 
 
 def load_row(builder: ir.IRBuilder, data: ir.Value, index: ir.Value) -> list[Lanes]:
     """Load the row of one particle into every lane."""
-    start = builder.mul(index, _WORD(WIDTH))
-    values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(WIDTH))
+    start = builder.mul(index, _WORD(ROW))
+    values = (builder.load(builder.gep(data, [builder.add(start, _WORD(k))])) for k in range(ROW))
     return [Lanes(builder, value).all(value) for value in values]
 
 
@@ -123,7 +131,7 @@ def marks(builder: ir.IRBuilder, data: ir.Value, indices: list[ir.Value]) -> ir.
     """Return one bit per particle, from an array of bytes 0 or 1."""
     mask = ir.IntType(WIDTH)(0)
     for n, index in enumerate(indices):
-        mark = builder.load(builder.gep(data, [index]))
+        mark = builder.trunc(builder.load(builder.gep(data, [index])), ir.IntType(WIDTH))
         mask = builder.or_(mask, builder.shl(mark, ir.IntType(WIDTH)(n)))
     return mask
 
@@ -141,7 +149,7 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
     """Return the earliest of eight contacts; of simultaneous contacts, the lowest index."""
     build = time.builder
     first = time
-    for step in (4, 2, 1):
+    for step in _STEPS:
         other = first.rotate(step)
         first = other.where(other < first, first)
     earliest = build.extract_element(first.value, _INT(0))
@@ -154,7 +162,7 @@ def soonest(time: Lanes, number: Lanes) -> tuple[ir.Value, ir.Value]:
     is_finite = build.fcmp_ordered("<", earliest, _DOUBLE(inf))
     with build.if_then(build.and_(several, is_finite), likely=False):
         lowest = number.where(at_first, number.all(_WORD(2**63 - 1)))
-        for step in (4, 2, 1):
+        for step in _STEPS:
             other = lowest.rotate(step)
             lower = Lanes(build, build.icmp_signed("<", other.value, lowest.value))
             lowest = other.where(lower, lowest)

@@ -29,8 +29,8 @@ def leads_out(name: str) -> bool:
 
 
 def scene_files(config: Any) -> list[str]:
-    """Return the distinct normalised paths of the scene files of all experiments in a merged config. They are
-    the texts under `scene` in points and grids.
+    """Return the distinct normalised paths of all scene files (`scene` in points and grids) of a merged
+    config.
     """
     paths: dict[str, None] = {}
     blocks = [config.get("experiments") if isinstance(config, dict) else None]
@@ -70,9 +70,7 @@ class Finished:
 
     @property
     def is_copy(self) -> bool:
-        """True if `root` is a copy of the project. Otherwise `root` has another workflow, which uses this
-        project as a module.
-        """
+        """True if `root` is a copy of the project, and not a workflow that uses it as a module."""
         return (self.root / "workflow/rules/common.smk").is_file()
 
     @property

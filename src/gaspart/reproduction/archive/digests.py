@@ -48,8 +48,8 @@ def digest_of_numbers(path: Path) -> str:
 
 
 def joint_digest(paths: Iterable[str], digests: Mapping[str, str]) -> str:
-    """Compute a joint digest of files, from the lines "<digest> <path>" in the order of the paths. A folder
-    stands for all files of `digests` in it. Raises KeyError for any other path.
+    """Compute a joint digest of lines "<digest> <path>" in order; a folder stands for its files in
+    `digests`.
     """
     files: set[str] = set()
     names = sorted(digests)

@@ -101,8 +101,8 @@ def _reason(error: BaseException) -> str:
 
 @contextmanager
 def opened_archive(path: str | Path) -> Iterator[Stored]:
-    """Open an archive within the `with` block. Raises SceneError for a file that cannot be read or is no
-    archive of gaspart, and for names that lead out of the archive.
+    """Open an archive within the `with` block. Raises SceneError for a file that is no readable archive of
+    gaspart, or has names that lead out of it.
     """
     path = Path(path)
     with ExitStack() as stack:

@@ -92,8 +92,8 @@ class Claim:
 
     @classmethod
     def at_least(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
-        """Return the claim that the measured number is `bound` or more. `rest` and `others` are the remaining
-        fields of the claim, from `required` on.
+        """Return the claim that the measured number is at least `bound`; `rest` and `others` are further
+        fields.
         """
         text = f"{claim} (at least {bound:g})"
         others["bounds"] = (bound, math.inf)
@@ -101,8 +101,8 @@ class Claim:
 
     @classmethod
     def at_most(cls, claim: str, measured: Estimate, bound: Number, *rest: Any, **others: Any) -> Claim:
-        """Return the claim that the measured number is `bound` or less. `rest` and `others` are the remaining
-        fields of the claim, from `required` on.
+        """Return the claim that the measured number is at most `bound`; `rest` and `others` are further
+        fields.
         """
         text = f"{claim} (at most {bound:g})"
         others["bounds"] = (-math.inf, bound)
@@ -149,9 +149,7 @@ class Claim:
 
     @classmethod
     def joint(cls, claim: str, deviations: ArrayLike, source: str, fails_if: str, **others: Any) -> Claim:
-        """Return the `chi_square` claim on independent deviations. Deviations are in standard deviations, and
-        have any shape.
-        """
+        """Return the `chi_square` claim on independent deviations, in standard deviations, of any shape."""
         import numpy as np
 
         deviations = np.asarray(deviations, dtype=float)
@@ -202,9 +200,7 @@ class Claim:
 
     @property
     def is_conclusive(self) -> bool:
-        """True if agreement would be significant. The uncertainty is at most the required one, and the
-        alternative would be distinguished.
-        """
+        """True if agreement would be significant: by the required uncertainty and against the alternative."""
         return self.is_finite and self.measured.error <= self.required and self.has_power
 
     @property
@@ -306,7 +302,7 @@ def _verdict(claim: Claim, is_significant: bool) -> str:
 def reason(claim: Claim, verdict: str) -> str:
     """Return the reason for a verdict that is inconclusive or missing, or for a source's error. For an
     inconclusive claim the reason contains a factor: a measurement longer by this factor would make the claim
-    conclusive. The reason is empty for other verdicts.
+    conclusive.
     """
     if verdict == "no verdict":
         return claim.no_verdict
@@ -329,8 +325,7 @@ def reason(claim: Claim, verdict: str) -> str:
 
 def sufficient(claim: Claim) -> float:
     """Compute the factor by which the measurement must be longer to be just conclusive. The uncertainty falls
-    as the inverse root of the length. The factor is below 1 if a shorter measurement suffices, and infinite
-    if no length suffices. It is NaN without numbers, or without an uncertainty.
+    as the inverse root of the length. It is NaN without numbers, or without an uncertainty.
     """
     error = claim.measured.error
     if not claim.is_finite or not error > 0.0:

@@ -120,17 +120,15 @@ def read(path: str | Path) -> list[dict[str, Any]]:
 
 
 def collect(paths: Iterable[str | Path]) -> pandas.DataFrame:
-    """Join the claims of several tables to one pandas DataFrame with `COLUMNS`. The order is the order of
-    `paths`.
-    """
+    """Join the claims of several tables, in the order of `paths`, to a pandas DataFrame with `COLUMNS`."""
     import pandas
 
     return pandas.DataFrame([row for path in paths for row in read(path)], columns=list(COLUMNS))
 
 
 def counts(rows: Iterable[dict[str, Any]]) -> dict[str, dict[str, int]]:
-    """Count the claims of each kind by verdict: {kind: {verdict: number}}. Kinds and verdicts are in the
-    order of `CLAIM_KINDS` and `VERDICTS`. Kinds and verdicts without claims are omitted.
+    """Count claims by kind and verdict, in the order of both lists and without zeros: {kind: {verdict:
+    number}}.
     """
     pairs = [(row["kind"], row["verdict"]) for row in rows]
     return {
@@ -198,9 +196,7 @@ def _number(row: dict[str, Any], name: str) -> float:
 
 
 def concise(value: float, error: float) -> str:
-    """Format a number with its uncertainty in units of the last digit. The uncertainty has two digits if
-    these are below 20, else one digit.
-    """
+    """Format a number with its uncertainty in units of the last digit: two digits below 20, else one."""
     if not (error > 0.0 and math.isfinite(error)):
         return f"{value:.5g}"
     digits = 1 - math.floor(math.log10(error))

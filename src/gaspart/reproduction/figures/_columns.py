@@ -101,7 +101,7 @@ class Stretch:
 
 def stretches(point: Point, number: int) -> list[Stretch]:
     """Cut the measured part of every replica into `number` blocks of equal length, without a remainder.
-    Adjacent blocks share only the frame at which momenta are read. Raises ValueError for too few frames.
+    Raises ValueError for too few frames.
     """
     radius, result = 0.5 * field(point).diameter, []
     for run in runs(point):

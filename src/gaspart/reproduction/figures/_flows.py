@@ -129,8 +129,8 @@ def fraction_of(point: Point) -> float:
 
 
 def speeds_of(timed: Timings, of: Sequence[Flow]) -> dict[str, Estimate]:
-    """Return the CPU time per simulated time of flows in a uniform gas, by engine. The timings are of other
-    particle numbers. The step nearest to the flow's step is used.
+    """Return CPU time per simulated time of flows, by engine, from timings of other numbers at the nearest
+    step.
     """
     gas = 3, of[0].packing_fraction
     same = {timing.solver: timing for timing in timed.of(*gas)}
@@ -166,9 +166,7 @@ def flow_choices(flows: Sequence[Flow], count: int, speeds: Mapping[str, Estimat
 
 
 def errors_of(flow: Flow, event: Flow) -> tuple[float, float]:
-    """Return bounds on the errors of model and discretisation. The theoretical bounds are used, unless the
-    measured difference from the event-driven engine gives a smaller bound.
-    """
+    """Return bounds on errors of model and discretisation, theoretical or smaller measured ones."""
     bounds = flow.candidate
     if bounds.engine.reference:
         return 0.0, 0.0

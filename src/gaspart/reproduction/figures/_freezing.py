@@ -72,8 +72,8 @@ def of_start(points: list[Point], start: str) -> dict[float, Point]:
 
 
 def measure_states(points: list[Point], row: Callable[[Point], dict[str, Any]]) -> xr.Dataset:
-    """Return the columns of each start and packing fraction, NaN without a run. `disagreement` is the largest
-    deviation of pressure or order between starts, or between halves of a run.
+    """Return the columns of each start and density, NaN without a run; `disagreement` between starts or
+    halves.
     """
     chosen = [point for start in STARTS.values() for point in of_start(points, start).values()]
     dataset = table("point", chosen, row).set_index(point=["start", "packing_fraction"]).unstack("point")

@@ -69,8 +69,8 @@ class Averages:
         return steady_mean(0.5 * (self.heat_in + self.heat_out)[blocks], *changes.T)
 
     def wall_ratio(self) -> Estimate:
-        """Compute the heat into the cold wall divided by the heat out of the hot wall. Both differ by the
-        energy that the particles gained: independent energies at both ends of a replica.
+        """Compute heat into the cold over heat out of the hot wall, which differ by energies stored at both
+        ends.
         """
         replicas, ends, _ = self.stored.shape
         spread = self.stored[:, :, 0].std(axis=1, ddof=1)
@@ -79,9 +79,7 @@ class Averages:
 
 
 def averages(point: Point, gap: Gap, blocks: int, bins: int) -> Averages:
-    """Average over blocks of the measured part of each replica, of particles of mass 1. Raises ValueError if
-    there are too few frames.
-    """
+    """Average over blocks of each replica, of particles of mass 1; ValueError for too few frames."""
     radius = point.scene.smallest_radius
     heats, densities, energies, missing, stored, conducted = [], [], [], [], [], 0.0
     grid = gap.grid(bins)

@@ -63,8 +63,8 @@ def _costs(run: xr.Dataset, number: np.ndarray, *counted: str) -> xr.Dataset:
 
 
 def weights(seconds: Estimate, *work: float | np.ndarray) -> statistics.Fit:
-    """Fit the cost of each kind of work, (points,) or equal for all: seconds = sum of weight x work. If the
-    scatter is larger than the errors (and `SYSTEMATIC`) explain, the covariance is scaled up.
+    """Fit the cost of each kind of work (points,): seconds = sum of weight x work, with scatter in the
+    errors.
     """
     design = np.stack(np.broadcast_arrays(*work), axis=1)
     fit = statistics.fit_linear(design, seconds.value, _spread(seconds))

@@ -33,7 +33,7 @@ from gaspart.reproduction.figures._timings import median
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row
 from gaspart.scene.container import Container
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.scene.scene import Scene
 from gaspart.scene.species import Species
 from gaspart.theory import bulk
@@ -96,9 +96,7 @@ class Timings:
 
 
 def compare_steps(points: Iterable[Point], timed: Timings) -> list[dict]:
-    """Return errors and costs of the time steps of each `compare` point, the longest step first. Costs are
-    per contact of the exact gas, and NaN for steps that were not timed.
-    """
+    """Return errors and costs, NaN if not timed, of each `compare` point's steps, the longest first."""
     return [_costs(_errors(point), timed) for point in points if point.job == "compare"]
 
 

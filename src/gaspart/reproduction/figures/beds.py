@@ -244,7 +244,7 @@ def bed_means(run: Run, settings: dict) -> dict[str, Any]:
 BEVERLOO = "[Beverloo 1961], in two dimensions: free fall from an arch as wide as the orifice"
 BALANCE = (
     "energy balance of an isothermal, nearly elastic bed, to first order in the density "
-    "(gaspart.theory.vibrated), losses at the floor included; the form is that of [Kumaran 1998] and of "
+    "(gaspart.theory.granular), losses at the floor included; the form is that of [Kumaran 1998] and of "
     "[McNamara 1998]"
 )
 

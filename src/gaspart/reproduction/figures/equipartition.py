@@ -24,7 +24,7 @@ from gaspart.reproduction.figure import PARTICLES, SOURCE_C, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.restitution import Restitution
-from gaspart.theory.rough import (
+from gaspart.theory.granular import (
     ROUGH_START_UNCERTAINTY,
     rough_cooling,
     rough_start_excess,

@@ -26,8 +26,7 @@ from gaspart.reproduction.figure import PARTICLES, Parts, pressure
 from gaspart.reproduction.figures.msd_spheres import spheres
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table, table
-from gaspart.scene.facts import plain_gas
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas, plain_gas
 from gaspart.trajectory.reading import open_trajectory
 
 TITLE, CHAPTER = "Equation of state", "Equation of state and structure"

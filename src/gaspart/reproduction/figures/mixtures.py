@@ -25,7 +25,7 @@ from gaspart.reproduction.claims import Claim
 from gaspart.reproduction.figure import PARTICLES, Parts, runs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.gas import Mixture
+from gaspart.scene.facts import Mixture
 from gaspart.scene.sizes import DISTRIBUTIONS, relative_radii
 from gaspart.theory.mixtures import MIXTURE_THEORIES
 from gaspart.theory.speeds import mean_speed_factor

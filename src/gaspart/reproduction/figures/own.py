@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.analysis.frames import measure_single
 from gaspart.analysis.observable import Observable, label_of
 from gaspart.analysis.observables import OBSERVABLES, require_defined, require_kept
+from gaspart.analysis.run import measure_single
 from gaspart.analysis.statistics import average, fit_power_law
 from gaspart.errors import SceneError
 from gaspart.keys import NUMBER, TEXT, choice, describe, flag, list_of, names, positive, record

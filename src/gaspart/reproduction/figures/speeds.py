@@ -27,8 +27,14 @@ from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
 from gaspart.scene.facts import plain_gas
 from gaspart.scene.scene import Scene
-from gaspart.theory.entropy import ENTROPY_UNCERTAINTY, Energies, entropy_deficit, equal_speeds
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope
+from gaspart.theory.speeds import (
+    ENTROPY_UNCERTAINTY,
+    RELAXATION_UNCERTAINTY,
+    Energies,
+    entropy_deficit,
+    equal_speeds,
+    initial_kurtosis_slope,
+)
 
 TITLE, CHAPTER = "Speed distributions", "Motion and its memory"
 HISTOGRAM = {
@@ -253,7 +259,7 @@ def _kolmogorov_distance(cumulative: np.ndarray) -> float:
 
 
 BOLTZMANN = "homogeneous Boltzmann equation from equal speeds (gaspart.theory.boltzmann)"
-SOLVED = "homogeneous Boltzmann equation from equal speeds, on a grid (gaspart.theory.entropy)"
+SOLVED = "homogeneous Boltzmann equation from equal speeds, on a grid (gaspart.theory.speeds)"
 GRID = "width of the cells of energy"
 MONTE_CARLO = "statistical error of the Monte Carlo solution"
 MAXWELL = "Maxwell's distribution (exact)"

@@ -37,8 +37,7 @@ from gaspart.reproduction.figures.chemical_potential import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, table
-from gaspart.scene.facts import plain_gas
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas, plain_gas
 from gaspart.theory.structure import percus_yevick_rdf, percus_yevick_structure_factor
 
 TITLE, CHAPTER = "Structure and chemical potential", "Equation of state and structure"

@@ -51,7 +51,7 @@ from gaspart.reproduction.figures._tradeoff import (
 )
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Row, Table, entries
-from gaspart.scene.gas import Gas
+from gaspart.scene.facts import Gas
 from gaspart.theory.bulk import EXACT
 
 TITLE, CHAPTER = "Speed against accuracy", "Speed and accuracy"

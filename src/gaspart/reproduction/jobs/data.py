@@ -31,10 +31,7 @@ def digest_of(parameters: dict[str, Any]) -> str:
 
 
 def made_by(path: str | Path) -> str:
-    """Return the digest of the arguments that made the data set of a point, or "".
-
-    May raise OSError.
-    """
+    """Return the digest of the arguments that made the data set of a point, or "". May raise OSError."""
     import netCDF4
 
     with netCDF4.Dataset(path) as file:

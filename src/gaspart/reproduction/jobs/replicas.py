@@ -79,8 +79,7 @@ def _remainders(folder: Path, paths: list[Path]) -> list[Path]:
     """Return the files that runs of other recipes left in a folder. Raises SceneError for a file that gaspart
     did not write, and for a folder or link.
     """
-    from gaspart.trajectory.checkpoint import CHECKPOINT
-    from gaspart.trajectory.opening import TRAJECTORY, UNFINISHED
+    from gaspart.trajectory.opening import CHECKPOINT, TRAJECTORY, UNFINISHED
 
     kinds = {".nc.partial": UNFINISHED, ".checkpoint.npz": CHECKPOINT, ".failed.npz": CHECKPOINT}
     remainders = []

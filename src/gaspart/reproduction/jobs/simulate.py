@@ -115,10 +115,7 @@ def _frame_interval(point: Point) -> float:
 
 
 def simulate(folder: Path, **arguments: Any) -> None:
-    """Write a trajectory for each seed; see `write_replicas`.
-
-    The other arguments are passed to `recipes`.
-    """
+    """Write a trajectory for each seed; see `write_replicas`. The other arguments are passed to `recipes`."""
     write_replicas(record, recipes(**arguments), folder, print, kept=kept_path(folder))
 
 

@@ -17,7 +17,7 @@ from gaspart.reproduction.points.point_keys import ENGINE_KEYS, LENGTHS, SCANS
 if TYPE_CHECKING:
     from gaspart.engines import Engine
     from gaspart.reproduction.points.point import Point
-    from gaspart.scene.gas import Mixture
+    from gaspart.scene.facts import Mixture
     from gaspart.scene.scene import Scene
 
 

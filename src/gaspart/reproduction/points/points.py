@@ -46,12 +46,11 @@ _OF_SEEDS = ("echo", "fill", "pack")
 def scale_length(
     job: str, settings: Mapping[str, Any], multiple: float, least: int = _LEAST_SAMPLES
 ) -> dict[str, Any]:
-    """Return the settings with `multiple` times as many replicas, and then longer runs.
-
-    The intervals between samples are kept, so that a run of less effort is the beginning of one of more. It
-    has at least `least` samples, and twice as many as lags, unless there are fewer at effort 1. The length of
-    two kinds of runs is not changed: those without equilibration, which describe a process in time, and those
-    with displacements but no lags, whose figures follow paths to their end.
+    """Return the settings with `multiple` times as many replicas, and then longer runs. The intervals between
+    samples are kept, so that a run of less effort is the beginning of one of more. It has at least `least`
+    samples, and twice as many as lags, unless there are fewer at effort 1. The length of two kinds of runs is
+    not changed: those without equilibration, which describe a process in time, and those with displacements
+    but no lags, whose figures follow paths to their end.
     """
     result = dict(settings)
     replicas = result.get("replicas", 1)

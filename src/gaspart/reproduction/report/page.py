@@ -186,7 +186,7 @@ CHAPTERS = (
 """Chapters in the order of the page."""
 _FEW = 6
 """Number of findings of a page without chosen ones."""
-_KEY, _SHARPNESS = 360, 1.6
+_KEY, _SHARPNESS = 360, 1.5
 """Width of a key picture in pixels, and resolution of pictures inside the page, in pixels per pixel of the
 page."""
 

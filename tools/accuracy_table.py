@@ -1,6 +1,6 @@
 """Writer of the table `data/accuracy.csv` from measurements of the workflow.
 
-    python -m gaspart.accuracy.fit results/measurements > src/gaspart/accuracy/data/accuracy.csv
+    python tools/accuracy_table.py results/measurements > src/gaspart/accuracy/data/accuracy.csv
 
 The writer reads the following files from a folder: speed_accuracy.nc (errors and times of the engines),
 virial_spheres.nc and virial_discs.nc (noise of Z and of the collision rate), msd_spheres.nc (noise of D) and
@@ -126,7 +126,7 @@ def main(folder: str) -> None:
     """Write the table to standard output."""
     revision = provenance.git_revision()
     print(
-        "# What accuracy costs; columns in gaspart/accuracy/table.py. Made by python -m gaspart.accuracy.fit"
+        "# What accuracy costs; columns in gaspart/accuracy/table.py. Made by python tools/accuracy_table.py"
     )
     print(f"# from the full reproduction, revision {revision}. Times are of the machine that it ran on.")
     writer = csv.DictWriter(sys.stdout, COLUMNS, lineterminator="\n")

@@ -1,0 +1,96 @@
+"""Trade of the reproduction: its processor time against what its claims decide.
+
+python tools/trade.py 0.25 results     record a finished run of this effort in docs/trade.csv
+python tools/trade.py                  draw what is recorded: docs/trade.png
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import sys
+from pathlib import Path
+
+from gaspart.reproduction import job_time
+from gaspart.reproduction.claims import table
+
+TABLE = Path("docs/trade.csv")
+RULES = {"kernels": ("warm",), "simulations": ("simulate",), "timings": ("compute",), "figures": ("figure",)}
+"""Rules of the workflow by kind of work."""
+CONCLUSIVE = {"agrees", "disagrees", "reproduced", "source in error"}
+"""Verdicts that longer runs would not change but by chance."""
+
+
+def minutes(results: Path) -> dict[str, float]:
+    """Return the CPU minutes of each kind of work, from the logs of its jobs; `other` has films and pages."""
+    spent = dict.fromkeys([*RULES, "other"], 0.0)
+    kinds = {rule: kind for kind, rules in RULES.items() for rule in rules}
+    for log in (results / "logs").rglob("*.log"):
+        rule, *names = log.relative_to(results / "logs").with_suffix("").parts
+        if used := job_time.read_used(results, rule, *names):
+            spent[kinds.get(rule, "other")] += used.seconds / 60.0
+    return spent
+
+
+def verdicts(results: Path) -> dict[str, float]:
+    """Return the numbers of figures, claims and verdicts, and the rms of deviations in standard errors."""
+    files = sorted((results / "claims").glob("*.csv"))
+    rows = [row for file in files for row in table.read(file)]
+    found = [row["verdict"] for row in rows]
+    sigmas = [row["deviation_sigma"] for row in rows if row["scattered"] == 1.0]
+    return {
+        "figures made": len(files),
+        "claims": len(rows),
+        "conclusive": sum(verdict in CONCLUSIVE for verdict in found),
+        "agree": sum(verdict in ("agrees", "reproduced") for verdict in found),
+        "disagree": found.count("disagrees"),
+        "rms z": math.sqrt(sum(sigma**2 for sigma in sigmas) / len(sigmas)) if sigmas else math.nan,
+    }
+
+
+def record(effort: str, results: Path) -> None:
+    """Write the row of a run into the table; a row of the same effort is replaced."""
+    spent = minutes(results)
+    row = {"effort": effort, **verdicts(results), "CPU min": sum(spent.values()), **spent}
+    text = {name: f"{value:.3g}" if isinstance(value, float) else str(value) for name, value in row.items()}
+    rows = {one["effort"]: one for one in read()} | {effort: text}
+    with TABLE.open("w", newline="", encoding="utf-8") as file:
+        written = csv.DictWriter(file, [*text], lineterminator="\n")
+        written.writeheader()
+        written.writerows(sorted(rows.values(), key=lambda one: float(one["CPU min"])))
+
+
+def read() -> list[dict[str, str]]:
+    """Return the recorded rows."""
+    if not TABLE.exists():
+        return []
+    with TABLE.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def draw() -> None:
+    """Draw shares of claims, and the rms of deviations, against CPU time."""
+    import matplotlib.pyplot as plt
+
+    rows = read()
+    time = [float(row["CPU min"]) for row in rows]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 2.8), layout="constrained")
+    for name, marker in (("conclusive", "o"), ("agree", "s")):
+        left.plot(time, [float(row[name]) / float(row["claims"]) for row in rows], f"{marker}-", label=name)
+    left.set(xlabel="CPU time in min", ylabel="share of claims", xscale="log", ylim=(0.0, 1.0))
+    left.legend()
+    right.plot(time, [float(row["rms z"]) for row in rows], "o-")
+    right.axhline(1.0, linewidth=0.8, color="0.5")
+    right.set(
+        xlabel="CPU time in min", ylabel="rms deviation in standard errors", xscale="log", ylim=(0.0, 2.0)
+    )
+    for axes in (left, right):
+        for row, x in zip(rows, time, strict=True):
+            axes.annotate(row["effort"], (x, 0.03), xycoords=("data", "axes fraction"), ha="center")
+    figure.savefig("docs/trade.png", dpi=150)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 3:
+        record(sys.argv[1], Path(sys.argv[2]))
+    draw()
