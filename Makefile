@@ -150,7 +150,7 @@ lint: develop
 	.venv/bin/python -m ruff format --check .
 	.venv/bin/python -m mypy
 	.venv/bin/lint-imports --no-cache
-	.venv/bin/python -m snakefmt --check workflow
+	.venv/bin/python -m snakefmt --check Snakefile workflow
 	.venv/bin/python -m snakemake --lint
 
 report: setup
