@@ -224,7 +224,7 @@ def check_step(engine: StepSettings, state: State) -> None:
     if worst <= 1.0:
         return
     rule = (
-        f"misses {100 * missed:.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
+        f"misses {100 * min(missed, 1.0):.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
         f"{met:.2g} in a step (fit is {CONTACTS[several]:g}); "
         f"a step of {engine.time_step / worst:.2g} would do"
     )
