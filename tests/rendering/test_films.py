@@ -106,8 +106,13 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
     assert np.abs(images[-1] - last).mean() < 4.0 < np.abs(images[-1] - first).mean()
 
 
-@pytest.mark.interpreted
-@pytest.mark.parametrize("scene", ["discs", "spheres"])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param("discs", marks=pytest.mark.interpreted),
+        pytest.param("spheres", marks=pytest.mark.thorough),  # rays take minutes as plain Python
+    ],
+)
 def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
     timed, size = runs / f"{scene}-timed.gif", (240, 180)
     film(runs / f"{scene}.nc", timed, size=size, colour="species", clock=True)
