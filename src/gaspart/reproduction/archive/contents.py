@@ -45,7 +45,7 @@ def scene_files(config: Any) -> list[str]:
 
 
 _BASE = Path("config/config.yaml")
-_WORKFLOWS = ("Snakefile", "workflow/Snakefile")
+_WORKFLOWS = ("workflow/Snakefile", "Snakefile")
 _WHOLE = {"experiments", "figures"}
 """Keys of a config that is complete by itself; other configs are merged over a default config."""
 
