@@ -81,7 +81,7 @@ def test_every_command_of_snakemake_plans(tmp_path, monkeypatch):
             if (name := title or named) and "experiments:" in text:
                 (copy.path / name).write_text(text, encoding="utf-8")
     failed = []
-    of_code = ("speed-moments", "free_path")  # figures of modules that a page prints
+    of_code = ("fast_particles", "free_path")  # figures of modules that a page prints
     for page, words in SNAKEMAKE:
         if not set(words) & set(plain) and not any(name in " ".join(words) for name in of_code):
             result = copy.snakemake("--dry-run", *words)

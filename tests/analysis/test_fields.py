@@ -59,7 +59,7 @@ def test_temperature_is_about_the_flow(sheared):
     assert (np.diff(found.estimate) > 0.0).all()
 
 
-@pytest.mark.interpreted
+@pytest.mark.thorough
 def test_species_apart_and_three_axes():
     kinds = [gp.Species(30, 0.3, temperature=1.0), gp.Species(10, 0.5, temperature=1.0)]
     simulation = gp.Simulation(gp.Scene(gp.Container((6.0,) * 3), kinds), gp.EventDriven(), seed=1)

@@ -70,6 +70,7 @@ def test_a_film_of_a_part_has_its_frames(runs):
     assert part.read_bytes() == chosen.read_bytes()
 
 
+@pytest.mark.interpreted
 def test_what_a_signal_removes_is_not_made_again(runs, tmp_path, monkeypatch):
     """The thread of signals removes the scratch file while ffmpeg has not yet opened it."""
     pictures = films._pictures
@@ -97,6 +98,7 @@ def test_the_poster_of_a_film_is_its_middle_picture(runs):
     assert np.argmin(np.abs(images - still).mean(axis=(1, 2, 3))) == 2
 
 
+@pytest.mark.thorough
 def test_a_film_of_spheres_is_made_of_their_pictures(runs):
     with gp.open_trajectory(runs / "spheres.nc") as trajectory:
         film(trajectory, runs / "spheres.gif", size=(64, 48), clock=False, colour="species")
@@ -106,8 +108,13 @@ def test_a_film_of_spheres_is_made_of_their_pictures(runs):
     assert np.abs(images[-1] - last).mean() < 4.0 < np.abs(images[-1] - first).mean()
 
 
-@pytest.mark.interpreted
-@pytest.mark.parametrize("scene", ["discs", "spheres"])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param("discs", marks=pytest.mark.interpreted),
+        pytest.param("spheres", marks=pytest.mark.thorough),  # rays take minutes as plain Python
+    ],
+)
 def test_labels_are_above_and_below_the_picture_and_the_time_runs(runs, scene):
     timed, size = runs / f"{scene}-timed.gif", (240, 180)
     film(runs / f"{scene}.nc", timed, size=size, colour="species", clock=True)
@@ -234,6 +241,7 @@ def test_a_mistake_costs_one_line(runs, monkeypatch, capsys, options, complaint)
     assert sorted(runs.iterdir()) == before
 
 
+@pytest.mark.interpreted
 def test_a_film_as_mp4_names_the_package_that_is_missing(runs, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(gp.SceneError, match=r"films as .mp4 .* not installed: pip install 'gaspart\[film\]'"):

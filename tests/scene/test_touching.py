@@ -86,7 +86,7 @@ def test_touching_across_a_periodic_face():
         gp.Scene(box, particles=[particles[0], gp.Particle((0.1, 0.3), (0.0, 0.0), 0.1 + 1e-14)])
 
 
-@pytest.mark.interpreted
+@pytest.mark.thorough
 def test_a_tower_on_the_floor_stands():
     """Four discs that touch, at rest under gravity, with contacts that lose energy: nothing moves."""
     particles = [gp.Particle((1.0, y), (0.0, 0.0), 0.1) for y in (0.1, 0.3, 0.5, 0.7)]
