@@ -224,8 +224,8 @@ def check_step(engine: StepSettings, state: State) -> None:
     if worst <= 1.0:
         return
     rule = (
-        f"misses {100 * min(missed, 1.0):.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle has "
-        f"{met:.2g} in a step (fit is {CONTACTS[several]:g}); "
+        f"misses {100 * min(missed, 1.0):.2g} % of all contacts (fit is {100 * MISSED:g} %), and a particle "
+        f"has {met:.2g} in a step (fit is {CONTACTS[several]:g}); "
         f"a step of {engine.time_step / worst:.2g} would do"
     )
     if missed > MISSED_MOST or met > CONTACTS_MOST[several]:
