@@ -39,7 +39,7 @@ def test_results_have_the_same_bits_for_parts_of_any_length(tmp_path, monkeypatc
     path = gp.run(SCENES[name], gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "run.nc")
     found = {}
     for numbers in (1, 700, 10**9):  # a frame, some frames, all frames
-        monkeypatch.setattr("gaspart.analysis.run._BLOCK", numbers)
+        monkeypatch.setattr("gaspart.analysis.run_data._BLOCK", numbers)
         found[numbers] = results(path)
     for part in (1, 700):
         for values, whole in zip(found[part], found[10**9], strict=True):
@@ -92,7 +92,7 @@ def test_every_third_frame_is_the_same_in_blocks(tmp_path, monkeypatch, displace
     whole = gp.measure(path, "msd")
     monkeypatch.setattr("gaspart.analysis.paths._WHOLE", 0)
     monkeypatch.setattr("gaspart.analysis.paths._BLOCK", 5000)
-    monkeypatch.setattr("gaspart.analysis.run._BLOCK", 700)
+    monkeypatch.setattr("gaspart.analysis.run_data._BLOCK", 700)
     found = gp.measure(path, "msd")
     assert len(found["lag"]) == len(whole["lag"]) < 40
     assert found.estimate.values == pytest.approx(whole.estimate.values, rel=1e-10)

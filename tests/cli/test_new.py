@@ -23,7 +23,7 @@ def test_a_template_is_a_scene_with_its_command_and_picture(name, tmp_path, monk
     assert f"#   {printed}\n" in written and "figure" not in written
     program, command, *arguments = shlex.split(printed)
     given = commands()[command].parse_args(arguments)
-    assert (program, given.scene, given.output) == ("gaspart", "my scene.yaml", "my scene.nc")
+    assert (program, given.scene, given.path) == ("gaspart", "my scene.yaml", "my scene.nc")
     assert gp.Scene.from_file("my scene.yaml").to_dict()["container"]
     samples = given.duration / given.sample_interval
     assert samples == pytest.approx(round(samples)) and 50 <= samples <= 200

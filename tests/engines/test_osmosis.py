@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import gaspart as gp
 from gaspart import theory
@@ -12,6 +13,7 @@ from gaspart.yaml_text import parse_yaml
 BLOCKS, BLOCK = 40, 1500.0
 
 
+@pytest.mark.thorough
 def test_the_osmotic_pressure_is_the_pressure_of_the_large_discs_alone():
     """Points have one density in the free space of both sides; large discs feel only each other."""
     scene = gp.Scene.from_dict(parse_yaml(templates()["osmosis"].text))

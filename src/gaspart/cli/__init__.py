@@ -45,7 +45,7 @@ _COMMANDS = {
     "completion": ("arguments", "let a shell complete commands, options and names"),
 }
 """Commands by name: the module, which has a function add_<name>, and the line in the list of commands."""
-_WRITE_FILES = ("new", "resume")  # commands with an option `output` do this
+_WRITE_FILES = ("new", "resume", "run")  # commands with an option `output` do this
 _EXAMPLES = """examples:
   gaspart new gas.yaml
   gaspart run gas.yaml -o gas.nc --duration 40 --sample-interval 0.4

@@ -96,7 +96,7 @@ _EXAMPLES_OF_BUDGET = """examples:
   gaspart budget config/config.yaml
   gaspart budget config/precise.yaml -o budget.csv    # a line for each claim
   gaspart budget config/config.yaml --status          # what is made and left
-  gaspart budget config/config.yaml --next            # then snakemake --cores all"""
+  gaspart budget config/config.yaml --next            # what runs next"""
 
 
 def add_budget(parser: Parser) -> None:

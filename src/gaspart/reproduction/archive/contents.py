@@ -87,6 +87,8 @@ class Finished:
         """Yield the results in every archive; figures in a journal's width, a third of all, are left out."""
         folder = self.results
         yield f"{folder}/tables/claims.csv"
+        if self.config.get("opening"):
+            yield f"{folder}/play.html"
         for figure in self.figures:
             yield from (
                 f"{folder}/figures/{name}" for name in (f"{figure}.png", f"{figure}.svg", f"key/{figure}.png")
