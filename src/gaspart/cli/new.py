@@ -34,7 +34,7 @@ _CHAPTERS = {
         "effusion",
     ),
     "Crystals and packings": ("crystal", "melting", "packing"),
-    "Grains": ("cooling", "hourglass", "shaken", "sheared", "incline"),
+    "Grains": ("cooling", "hourglass", "galton", "shaken", "sheared", "incline"),
 }
 """Names of all templates by chapter of the gallery; in a chapter, simple scenes come first."""
 _EXAMPLES = """examples:
