@@ -90,7 +90,10 @@ else:
     keep_efforts(config, folder_of_points())
     POINTS = all_points(config)
 
-EFFORTS_OF_RUNS = sorted({effort_of(config, name) for name in config["experiments"]})
+# A small run, such as the smoke run, is at no effort: its lengths are others.
+EFFORTS_OF_RUNS = sorted(
+    {effort_of(config, name) for name in config["experiments"]} if "sizes" not in config else ()
+)
 FIGURES = {name: find(name, block)[0] for name, block in config["figures"].items()}  # family of each
 FIRST = [name for name in ("virial_discs", "speed_relaxation", "speed_distribution_discs") if name in FIGURES]
 OWN_CAPTIONS = {name: caption(block) for name, block in config["figures"].items() if is_own(block)}
