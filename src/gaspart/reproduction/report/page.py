@@ -278,7 +278,6 @@ def headline(rows: list[dict[str, Any]]) -> dict[str, Any]:
     return {
         "agree": found.get("agrees", 0) + found.get("reproduced", 0),
         "open": found.get("inconclusive", 0),
-        "in_error": found.get("source in error", 0),
         "kinds": counts(rows),
         "disagree": [row for row in rows if row["verdict"] == "disagrees"],
         "chance": min(1.0, FAMILY_LEVEL * len(together)),
