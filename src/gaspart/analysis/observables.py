@@ -1,6 +1,6 @@
 """Declarations of all named observables.
 
-All parts of the program that use observables read these declarations. No other list of their names exists.
+All parts of the program that use observables read these declarations.
 These parts are `gaspart measure`, `sweep`, `advise`, `--until`, `check`, `info` and `theory`, figures of
 users, the reference page and shell completion (`tests/workflow/test_observables.py`). The module
 `declaration` defines the form of a declaration.

@@ -52,7 +52,7 @@ from gaspart.trajectory.correlator import Correlations
 #
 # J_q is tallied with the stress. The time integrals of J_a are displacements of particles relative to the
 # centre of mass. The fluxes here are means over the intervals between frames. The Green-Kubo formulas are
-# exact for such means, as in `transport`.
+# exact for such means.
 
 
 def conductivity_without_diffusion(run: Run, lag: float) -> Observable:
@@ -189,7 +189,7 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the thermal conductivity.
 
-    For a mixture the result is the conductivity without diffusion (see `conduction`). It is computed from the
+    For a mixture the result is the conductivity without diffusion (see `conductivity_without_diffusion`). It is computed from the
     fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
     theoretical value is Enskog's conductivity.
 

@@ -1,6 +1,6 @@
 """Physics of one contact: the time at which two particles touch, and the transferred momentum.
 
-Both engines with contacts use these functions. The functions use the invariants rr = r.r, rv = r.v, vv = v.v
+The engines use these functions. The functions use the invariants rr = r.r, rv = r.v, vv = v.v
 and ss = sigma^2. r and v are the separation and the relative velocity of two particles (second minus first),
 and sigma is the distance of the centres at contact. So they do not depend on the dimension, the container or
 the engine. The arithmetic keeps the type of its arguments (float32 remains float32), so 2x is written as x +

@@ -39,7 +39,7 @@ COEFFICIENTS = {
 }
 """Flux, Enskog's value, and label of each coefficient."""
 LONGER = 2.0
-"""Minimum wavelength in mean free paths. If only longer waves count, the growth of the modes changes by the
+"""Shortest length of waves (1 / wave number) in mean free paths. If only longer waves count, the growth of the modes changes by the
 uncertainty of theory."""
 LATE = 0.5
 """Fraction of the longest lag after which the squared change of Helfand's sum is assumed to grow linearly."""

@@ -90,7 +90,7 @@ def _least_samples(config: Mapping[str, Any], experiment: str) -> int:
 
 # Keys of a config, of an experiment and of its points, with kind, default and meaning. Validation, the JSON
 # schema and the reference page are derived from these tables. The settings of a figure are declared in the
-# `__init__.py` of its family.
+# `FIGURES` of its module.
 
 
 _WORD = r"[a-z][a-z0-9_]*$(?!\n)"  # $ also matches before a final line break
