@@ -189,9 +189,9 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
 def thermal_conductivity(source: Source, lag: float | None = None, start: float | None = None) -> Observable:
     """Measure the thermal conductivity.
 
-    For a mixture the result is the conductivity without diffusion (see `conductivity_without_diffusion`). It is computed from the
-    fluxes between frames, and the curves are absent. The time between frames must not exceed the lag. The
-    theoretical value is Enskog's conductivity.
+    For a mixture the result is the conductivity without diffusion (see `conductivity_without_diffusion`).
+    It is computed from the fluxes between frames, and the curves are absent. The time between frames must
+    not exceed the lag. The theoretical value is Enskog's conductivity.
 
     Parameters
     ----------

@@ -171,7 +171,7 @@ def exchange_with_vibration(i, j, approach, mobility, vibrations):
 
 @inner_kernel
 def collide_by_law(flights, i, j, rr, rv, space, tally, law):
-    """Apply the collision law of rough or inelastic particles to two of them (Spencer 2022, Eq. 39); return |r . dp|."""
+    """Apply the law of rough or inelastic particles (Spencer 2022, Eq. 39); return |r . dp|."""
     mobility_i, mobility_j = law.inverse_mass[i], law.inverse_mass[j]
     mobility = mobility_i + mobility_j
     length = sqrt(rr)

@@ -39,8 +39,8 @@ COEFFICIENTS = {
 }
 """Flux, Enskog's value, and label of each coefficient."""
 LONGER = 2.0
-"""Shortest length of waves (1 / wave number) in mean free paths. If only longer waves count, the growth of the modes changes by the
-uncertainty of theory."""
+"""Shortest length of waves (1 / wave number) in mean free paths. If only longer waves
+count, the growth of the modes changes by the uncertainty of theory."""
 LATE = 0.5
 """Fraction of the longest lag after which the squared change of Helfand's sum is assumed to grow linearly."""
 _FORM: dict[str, Any] = {"inner": ("lag",), "units": {"time": "collisions per particle"}}
