@@ -39,7 +39,7 @@ if INTERPRETED:
     read_fields()
     do_without_vectors()
 
-OF_CANONICAL_KERNELS = ("battery", "engines", "exact", "kernels", "scene", "state")
+OF_CANONICAL_KERNELS = ("battery", "engines", "exact", "scene", "state")
 """Folders whose unmarked tests may use the loops of `battery.compile_kernels` alone; others are warned."""
 LOOPS_BEFORE = set()
 """Digests of the engines' loops that earlier tests of this process have used."""

@@ -32,8 +32,8 @@ PYTHON = bool(numba.config.DISABLE_JIT)
 VISCOUS = gp.Restitution(0.8, 0.4, reference_speed=1.0)
 ROUGH, METAL = gp.Restitution(0.95, 0.4), gp.Restitution(1.0, 0.5)
 SPARSE = "rough in steps", "holding in steps", "metal in steps"
-CANONICAL = "oversized", "dsmc", "dsmc of a mixture"
-"""Runs of kernels that `make test` compiles anyway."""
+FEW = "oversized", "dsmc", "dsmc of a mixture"
+"""Runs of which `make test` compares the compiled kernels with Python."""
 FINE = {"oversized": (6, 6, 5), "oversized and rough": (12, 10)}  # boxes too narrow for the large particles
 
 

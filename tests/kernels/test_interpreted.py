@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from kernels.interpreted import CANONICAL, PYTHON, end_of, ends, runs
+from kernels.interpreted import FEW, PYTHON, end_of, ends, runs
 
 
 @pytest.mark.interpreted
@@ -21,9 +21,7 @@ def test_a_short_run_by_each_search(name):
         assert np.array_equal(end, end_of(name, engine, scene, limits)), engine
 
 
-@pytest.mark.parametrize(
-    "names", [CANONICAL, pytest.param(runs(), marks=pytest.mark.thorough)], ids=["few", "all"]
-)
+@pytest.mark.parametrize("names", [FEW, pytest.param(runs(), marks=pytest.mark.thorough)], ids=["few", "all"])
 def test_python_gives_the_bits_of_the_compiled_kernels(tmp_path, names):
     env = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
     script = Path(__file__).with_name("interpreted.py")
