@@ -94,7 +94,7 @@ def test_a_module_with_a_prefix_makes_everything_below_it_with_the_same_bits(tmp
 
 @pytest.mark.parametrize(("host", "prefix"), [("file", ""), ("hub", "parts/gas")])
 def test_a_module_from_a_repository_runs(tmp_path, monkeypatch, host, prefix):
-    """Its files are those of the commit, not of a folder; the hub's clone is where Snakemake would put it."""
+    """The files are those of the commit, not of a folder; the hub's clone is where Snakemake would put it."""
     project = copy_of_project(tmp_path / "project").path
     for line in ("init -q", "add .", "-c user.name=a -c user.email=a commit -q -m all"):
         subprocess.run(["git", *line.split()], cwd=project, check=True)
