@@ -1,7 +1,5 @@
 """Each observable in each kind of scene: its exact value, or refused, or stated why none is known."""
 
-from pathlib import Path
-
 import pytest
 from exact import rules, table, values
 from exact.choice import is_canonical, sample
@@ -15,8 +13,6 @@ from gaspart.scene.faces import FACE_KINDS
 from gaspart.scene.features import FEATURES
 from gaspart.scene.scene import Scene
 
-WRONG = Path(__file__).with_name("known_wrong.txt")
-"""Cells that are known to be wrong, a line `scene engine observable` each: to be repaired."""
 SAMPLE, MORE = 10, 4
 """Number of runs in the usual tests, and of further ones of engines that a change touches."""
 FINER = 5
@@ -28,28 +24,10 @@ ELSEWHERE = {
 """Features without a kind of scene, and why none has an exact value."""
 
 
-def known_wrong():
-    """Return the cells of the file."""
-    lines = WRONG.read_text(encoding="utf-8").splitlines()
-    return {tuple(line.split()) for line in lines if line and not line.startswith("#")}
-
-
 def check(name, engine, *run):
-    """Raise AssertionError unless the wrong cells of a run are the listed ones."""
-    found = table.cells(name, engine, *run)
-    wrong = {
-        cell.observable: f"{cell.text} ({cell.deviation:.1f})" for cell in found if cell.state == "wrong"
-    }
-    listed = [line[2] for line in known_wrong() if line[0] == name and line[1] in (engine, "*")]
-    new = [f"{observable}: {text}" for observable, text in wrong.items() if observable not in listed]
-    assert not new, "\n".join(new)
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("line", [line for line in known_wrong() if line[1] != "*"], ids=" ".join)
-def test_listed_cells_are_wrong(line):
-    name, engine, observable = line
-    assert table.cell_of(observable, kinds()[name], engine).state == "wrong", "take it off the list"
+    """Raise AssertionError if a cell of a run is wrong."""
+    wrong = [cell for cell in table.cells(name, engine, *run) if cell.state == "wrong"]
+    assert not wrong, "\n".join(f"{cell.observable}: {cell.text} ({cell.deviation:.1f})" for cell in wrong)
 
 
 RUNS = pytest.mark.parametrize(
@@ -130,8 +108,3 @@ def test_every_observable_has_a_value_somewhere():
         if not rules.undefined(observable, kind) and not rules.unknown(observable, kind)
     }
     assert set(OBSERVABLES) - valued <= set(rules.LONG)
-
-
-def test_listed_cells_exist():
-    runs = {*table.names(), *((name, "*") for name in kinds())}
-    assert all((name, engine) in runs and one in OBSERVABLES for name, engine, one in known_wrong())

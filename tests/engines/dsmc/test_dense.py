@@ -81,6 +81,24 @@ def test_more_particles_in_a_cell_bring_the_rate_closer():
     assert abs(lost[1]) < 0.02
 
 
+@pytest.mark.filterwarnings("ignore:gaspart")
+@pytest.mark.parametrize("threads", [1, 2])
+def test_no_heat_flows_in_a_uniform_gas(threads):
+    """The heat flux is 0 by symmetry. If cells follow in the same order in all steps, it is 0.31(1) along z."""
+    scene = gas(3, 400, 0.3, arrangement="lattice", exact_temperature=True)
+    settings = {"model": "enskog", "cells_per_side": (2, 2, 24), "time_step": 0.1, "threads": threads}
+    sim = gp.Simulation(scene, gp.DSMC(**settings), seed=1, stress=True)
+    make(sim, 50)
+    flux = []
+    for _ in range(40):
+        sim.reset_tally()
+        make(sim, 50)
+        flux.append(np.asarray(sim.tally.heat_sum) / (sim.tally.time * 400))
+    error = np.std(flux, axis=0, ddof=1) / math.sqrt(40)
+    assert (error < 0.02).all()
+    assert (np.abs(np.mean(flux, axis=0)) < 4.0 * error).all()
+
+
 def test_the_whole_tally_is_the_same_however_a_run_is_split():
     scene = gas(3, 300, 0.2, "wall")
     one, two = (advanced(scene, 1, model="enskog") for _ in range(2))

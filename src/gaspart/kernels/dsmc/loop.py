@@ -23,7 +23,7 @@ from gaspart.kernels.dsmc.cells import (
     share_cells,
     swap_row,
 )
-from gaspart.kernels.dsmc.enskog import collide_slab, find_bounds, find_near_speeds, look_at_cells
+from gaspart.kernels.dsmc.enskog import backwards, collide_slab, find_bounds, find_near_speeds, look_at_cells
 from gaspart.kernels.dsmc.entry import admit_all, first_free_slot
 from gaspart.kernels.dsmc.model import ThreadContext, open_space, still_fits
 from gaspart.kernels.dsmc.motion import move
@@ -128,8 +128,10 @@ def collide_dense(particles, grid, context, threads, law, dense, stress):
         share_cells(grid, shares)
         look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stress)
     find_bounds(grid, workspace, dense)
-    for turn in range(min(2, len(dense.slabs) - 1)):
-        if turn > 0:
+    turns = min(2, len(dense.slabs) - 1)
+    for n in range(turns):
+        turn = turns - 1 - n if backwards(workspace) else n
+        if n > 0:
             find_near_speeds(grid, dense)
         if threads is None:
             collide_slabs(particles, turn, 1, grid, context, dense, law, stress)
