@@ -211,6 +211,7 @@ def dense_for(scene: Scene, state: State, grid: Grid, kinds: int) -> Dense:
         bend=BEND[d],
         highest=np.ones(1),
         least_part=least_part(scene, np.unique(state.radii), grid),
+        half=np.zeros(1, np.int64),
     )
 
 

@@ -8,6 +8,11 @@ collision conserves momentum and energy, and transfers both over a diameter. Tri
 another as in `boltzmann`, cell by cell. The bound of a cell is computed from the largest number of particles
 and the highest speeds in any cell within reach. A collision that exceeds a bound raises it.
 
+Half of the collisions of a step come before the flight and half after it, where cells follow in the opposite
+order. So a step is symmetric in time. If cells followed in the same order in all steps, energy would flow
+along it. If all collisions came after the flight, samples would show velocities after the kicks that balance
+gravity and the gradient of the pressure.
+
 A trial in a cell changes particles up to a distance `reach` away, so threads cannot work on arbitrary cells.
 Therefore the cells are divided into an even number of slabs along one axis, each at least two reaches wide. A
 trial in one slab changes no particle within reach of the next slab but one. First all even slabs are
@@ -73,6 +78,7 @@ class Dense(NamedTuple):
     bend: float
     highest: np.ndarray
     least_part: float | None
+    half: np.ndarray
 
 
 @inner_helper
@@ -111,10 +117,10 @@ def sliding_maximum(values, room, reach, stride, per_side, wraps):
 @inner_kernel
 def look_at_cells(particles, cells, grid, workspace, dense):
     """Find highest speed and number of particles in cells[0] to cells[1]. The fields of these cells are
-    smoothed if the weight is positive.
+    smoothed after a flight if the weight is positive.
     """
     d = len(particles.images)
-    if dense.weight > 0.0:
+    if dense.half[0] == 1 and dense.weight > 0.0:
         smooth(particles, cells, grid, workspace, dense)
     for cell in range(cells[0], cells[1]):
         first, end = np.int64(grid.starts[cell]), np.int64(grid.starts[cell + 1])
@@ -354,12 +360,12 @@ def try_once(particles, counter, words, bound, grid, context, dense, options):
 
 @inner_helper
 def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
-    """Perform the collisions of one step in a cell. `rate`: rate of trials divided by three factors: the
+    """Perform the collisions of half a step in a cell. `rate`: rate of trials divided by three factors: the
     number of particles in the cell, the largest number of particles in a cell within reach, and the bound of
     the speed. `options`: the options of `try_once`.
     """
     workspace = context.workspace
-    counts, key, step = workspace.counts[context.part], workspace.key, workspace.clock[0]
+    counts, key, step = workspace.counts[context.part], workspace.key, 2 * workspace.clock[0] + dense.half[0]
     number = np.int64(grid.starts[cell + 1]) - np.int64(grid.starts[cell])
     pairs = rate * number * dense.near_count[cell]
     remaining, trial = 1.0 if number > 0 else 0.0, 0
@@ -377,21 +383,15 @@ def collide_dense_cell(particles, cell, rate, grid, context, dense, options):
     counts[TRIALS] += trial
 
 
-@inner_helper
-def backwards(workspace):
-    """Return True in every second step, in which cells follow in the opposite order. If the order were always
-    the same, energy would flow along it in proportion to the step.
-    """
-    return workspace.clock[0] % 2 == 1
-
-
 @inner_kernel
 def collide_slab(particles, slab, grid, context, dense, law, stress):
-    """Perform the collisions of one step in a slab, cell after cell."""
+    """Perform the collisions of half a step in a slab, cell after cell, of the second `half` in the opposite
+    order.
+    """
     workspace, d = context.workspace, len(context.space.lengths)
     sigma = 2.0 * workspace.largest
     around = 6.283185307179586 * (sigma if d == 2 else 2.0 * sigma * sigma)
-    rate = 0.5 * around * dense.highest[0] / grid.volume * workspace.dt * len(workspace.radius)
+    rate = 0.5 * around * dense.highest[0] / grid.volume * 0.5 * workspace.dt * len(workspace.radius)
     rate = increase(rate, dense.least_part)
     options = law, stress, slab, dense.least_part
     stride = grid.strides[dense.axis]
@@ -399,7 +399,7 @@ def collide_slab(particles, slab, grid, context, dense, law, stress):
     first, width = dense.slabs[slab] * stride, (dense.slabs[slab + 1] - dense.slabs[slab]) * stride
     number = (len(grid.starts) - 1) // row * width
     for n in range(number):
-        at = number - 1 - n if backwards(workspace) else n
+        at = number - 1 - n if dense.half[0] == 1 else n
         cell = at // width * row + first + at % width
         collide_dense_cell(particles, cell, rate, grid, context, dense, options)
         if stress is not None:

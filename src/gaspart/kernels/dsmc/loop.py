@@ -1,4 +1,5 @@
-"""Sequence of a step: motion, entries through open faces, sorting into cells, collisions.
+"""Sequence of a step: motion, entries through open faces, sorting into cells, collisions. Half of the
+collisions of a dense gas come before the motion.
 
 The parts of a step that threads share are separate functions. If `threads` equals None, there is one thread,
 and the machine code contains no threading. numba does not pass nested tuples to threads, so each thread makes
@@ -16,14 +17,17 @@ from gaspart.kernels.compile.policy import (
 )
 from gaspart.kernels.dsmc.boltzmann import add_flights, collide_cells
 from gaspart.kernels.dsmc.cells import (
+    count,
     find_starts,
     gather_numbers,
     gather_row,
+    leave_out_absent,
+    locate,
     put_in_order,
     share_cells,
     swap_row,
 )
-from gaspart.kernels.dsmc.enskog import backwards, collide_slab, find_bounds, find_near_speeds, look_at_cells
+from gaspart.kernels.dsmc.enskog import collide_slab, find_bounds, find_near_speeds, look_at_cells
 from gaspart.kernels.dsmc.entry import admit_all, first_free_slot
 from gaspart.kernels.dsmc.model import ThreadContext, open_space, still_fits
 from gaspart.kernels.dsmc.motion import move
@@ -87,7 +91,7 @@ def collide_shared(particles, shares, grid, workspace, lengths, periodic, law, s
 @inner_helper
 def look_at_part(particles, cells, grid, context, dense, law, stress):
     """Prepare the cells of one thread for the collisions of a dense gas. These are cells[0] to cells[1]."""
-    if stress is not None:
+    if stress is not None and dense.half[0] == 1:
         add_flights(particles, cells, grid, context, stress, law)
     look_at_cells(particles, cells, grid, context.workspace, dense)
 
@@ -102,7 +106,7 @@ def look_at_shared(particles, shares, grid, workspace, lengths, dense, law, stre
 
 @inner_helper
 def collide_slabs(particles, turn, parts, grid, context, dense, law, stress):
-    """Perform the collisions of one step in one thread's slabs, every second one from slab `turn`."""
+    """Perform the collisions of half a step in one thread's slabs, every second one from slab `turn`."""
     slabs = part_of(context.part, parts, (len(dense.slabs) - turn) // 2)
     for n in range(slabs[0], slabs[1]):
         collide_slab(particles, turn + 2 * n, grid, context, dense, law, stress)
@@ -118,9 +122,10 @@ def collide_slabs_shared(particles, turn, grid, workspace, lengths, dense, law, 
 
 
 @inner_allocating_kernel
-def collide_dense(particles, grid, context, threads, law, dense, stress):
-    """Perform the collisions of one step of a dense gas."""
+def collide_dense(particles, half, grid, context, threads, law, dense, stress):
+    """Perform the collisions of a dense gas in half 0 or 1 of a step, before or after the flight."""
     lengths, workspace = context.space.lengths, context.workspace
+    dense.half[0] = half
     if threads is None:
         look_at_part(particles, (0, len(grid.starts) - 1), grid, context, dense, law, stress)
     else:
@@ -130,7 +135,7 @@ def collide_dense(particles, grid, context, threads, law, dense, stress):
     find_bounds(grid, workspace, dense)
     turns = min(2, len(dense.slabs) - 1)
     for n in range(turns):
-        turn = turns - 1 - n if backwards(workspace) else n
+        turn = turns - 1 - n if half == 1 else n
         if n > 0:
             find_near_speeds(grid, dense)
         if threads is None:
@@ -171,12 +176,33 @@ def sort_all(particles, grid, threads):
     particles.rows[len(particles.rows) - 1] = 1 - particles.rows[len(particles.rows) - 1]
 
 
+@inner_helper
+def sort_at_rest(particles, grid, threads, faces, dense):
+    """Sort the particles of a dense gas in memory by cells before the first step; other steps sort them."""
+    if dense is not None:
+        parts = len(grid.counts)
+        for part in range(parts):
+            slots = part_of(part, parts, particles.data.shape[1])
+            locate(particles, slots[0], slots[1], grid)
+            if faces is not None:
+                leave_out_absent(particles, slots[0], slots[1], grid, faces.present)
+            count(slots[0], slots[1], part, grid)
+        sort_all(particles, grid, threads)
+
+
+@inner_allocating_kernel
+def collide_before_flight(particles, grid, context, threads, law, dense, stress):
+    """Perform the collisions of a dense gas in the first half of a step."""
+    if dense is not None:
+        collide_dense(particles, 0, grid, context, threads, law, dense, stress)
+
+
 @inner_allocating_kernel
 def collide_all(particles, grid, context, threads, law, dense, stress):
-    """Perform the collisions of one step."""
+    """Perform the collisions of one step, of a dense gas those after the flight."""
     space, workspace = context.space, context.workspace
     if dense is not None:
-        collide_dense(particles, grid, context, threads, law, dense, stress)
+        collide_dense(particles, 1, grid, context, threads, law, dense, stress)
     elif threads is None:
         collide_part(particles, (0, len(grid.starts) - 1), grid, context, law, stress)
     else:
@@ -193,9 +219,11 @@ def run_steps(particles, grid, context, steps, threads, options):
     gases behind open faces; each may be None.
     """
     gravity, faces, law, dense, stress, pace, reservoirs = options
+    sort_at_rest(particles, grid, threads, faces, dense)
     for n in range(steps):
         if n > 0 and not still_fits(particles, pace):
             return n
+        collide_before_flight(particles, grid, context, threads, law, dense, stress)
         slot = first_free_slot(reservoirs)
         move_all(particles, grid, context, threads, gravity, faces, law)
         admit_all(particles, slot, grid, context, faces, reservoirs)
