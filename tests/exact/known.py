@@ -281,6 +281,10 @@ def _z(kind):
         )
     if kind.name == "two_periodic" and kind.equation == "exact":
         return _number(closed.two_body_z(2, 2.0 * kind.case.groups[0].radius, kind.case.box.lengths.prod()))
+    if kind.name == "discs_thinnest" and kind.equation == "exact":  # by the second virial coefficient
+        one, sigma = kind.case.groups[0], 2.0 * kind.case.groups[0].radius
+        excess = (one.count - 1) * static.sphere(2, sigma) * sigma / (4.0 * kind.case.box.lengths.prod())
+        return _number(1.0 + excess, excess**2)
     return {}
 
 
