@@ -45,8 +45,10 @@ all: setup
 	$(VERDICTS) results/tables/claims.csv
 	@echo "report: results/report.html"
 
-# Doubles the effort of what open claims depend on until each is decided, or has an effort of 4.
+# Doubles the effort of what open claims depend on until each is decided, or has an effort of 4. What an interrupted
+# run was to make comes first: `--next` doubles efforts that are written, made or not.
 decide: setup
+	$(SNAKEMAKE) --quiet rules
 	@while .venv/bin/python -m gaspart budget config/config.yaml --next; \
 		do $(SNAKEMAKE) --quiet rules || exit; done
 	$(VERDICTS) results/tables/claims.csv

@@ -116,7 +116,7 @@ def add_budget(parser: Parser) -> None:
         "--next",
         action="store_true",
         help="double the effort of the experiments whose claims are open, up to 4, for the next run of the "
-        "workflow; exit code 1 if no effort decides more",
+        "workflow, which must have ended before; exit code 1 if no effort decides more",
     )
 
 
