@@ -63,8 +63,9 @@ def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
         assert (np.isfinite(modes) == late).all()
         for row in range(2):
             ends = np.flatnonzero(late[row])[[0, -1]]
-            grown = np.diff(found[name].values[row, ends]) / np.diff(modes[row, ends])
+            grown, of_modes = np.diff(found[name].values[row, ends]), np.diff(modes[row, ends])
             assert np.isclose(float(found[f"{name}_growth"][row]), grown[0])
+            assert np.isclose(float(found[f"{name}_modes_growth"][row]), of_modes[0])
             assert 0.0 < float(found[f"{name}_short_waves"][row]) < 1.0
 
 
