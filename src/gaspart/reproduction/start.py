@@ -58,7 +58,7 @@ def _take(archive: Path, config: str | Path) -> str:
             deposited = read_yaml(there / tables.CONFIG)
             efforts = {name: effort_of(deposited, name) for name in deposited["experiments"]}
             raise_efforts(own, efforts)
-            points = [point for each in all_points(own).values() for point in each.values()]
+            points = _needed(own)
             root = there / str(_root(there))
             used = [point for point in points if _place(replace(point, root=str(root)), Path(point.path))]
         names = {point.experiment for point in used}
@@ -69,6 +69,15 @@ def _take(archive: Path, config: str | Path) -> str:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
             Path(path).touch()
     return _describe(archive, summary, used, left)
+
+
+def _needed(config: dict[str, Any]) -> list[Point]:
+    """Return the points of all figures, and the first of each film's experiment."""
+    every = all_points(config)
+    names = {name for block in config["figures"].values() for name in block.get("experiments", ())}
+    films = {block["experiment"] for block in config.get("animations", {}).values()} - names
+    found = [point for name in every if name in names for point in every[name].values()]
+    return found + [next(iter(every[name].values())) for name in sorted(films)]
 
 
 def _root(there: Path) -> Path:
