@@ -54,7 +54,7 @@ def state(plant):
     scene, observable, *engine = plant.cell
     try:
         return table.cell_of(observable, kinds()[scene], *engine).state
-    except SimulationError:  # the run stops itself
+    except (SimulationError, ValueError):  # the run stops itself, or its numbers are none
         return "broken"
 
 

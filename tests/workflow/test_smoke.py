@@ -179,7 +179,7 @@ def test_the_report_reads_and_clicks_on_a_phone_and_on_a_desk(smoke, tmp_path, w
     assert len(found["images"]) >= 2 * len(smoke.figures) and min(found["images"]) > 0
     assert found["films"] == len(list((smoke.path / "results/smoke/animations").glob("*.mp4")))
     assert found["width"] <= width and found["font"] >= 12.0
-    assert found["first"] == "which-engine" and found["chosen"] == ["0", "0"]
+    assert found["first"] == "findings" and found["chosen"] == ["0", "0"]
     assert found["fields"] == found["options"][1] * found["options"][2] and all(found["costs"])
     answers = [answer for of in found["answers"] for answer in of]
     assert len(answers) == found["options"][0] * found["options"][2] and "NaN" not in "".join(answers)
