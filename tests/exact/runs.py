@@ -86,7 +86,7 @@ def time_step(kind):
     return min(part * solid, kind.run["interval"] / 8.0)
 
 
-def options(kind, scene, engine):
+def options(kind, scene, engine, interval):
     """Return what the run keeps: paths, collisions of pairs, correlations, impulses, where it can."""
     found = {}
     if not kind.opened:
@@ -96,7 +96,7 @@ def options(kind, scene, engine):
     if kind.stress and not kind.opened and (not kind.wide or "transport" in kind.run):
         try:
             engine.check_tally(StressTally(), scene)
-            found["correlations"] = Correlations(kind.run["interval"] / 2.0, LAGS, stress=True)
+            found["correlations"] = Correlations(interval / 2.0, LAGS, stress=True)
         except SceneError:
             pass
     if "impulses" in kind.run and ImpulseTally.name in engine.tallies:
@@ -123,7 +123,7 @@ def recorded(name, engine_name="event", seed=SEED, longer=1.0, finer=1):
         warnings.simplefilter("ignore")
         path = Path(folder) / "run.nc"
         duration = longer * kind.run["duration"]
-        kept = options(kind, scene, engine) | {"initial": initial}
+        kept = options(kind, scene, engine, interval) | {"initial": initial}
         gp.run(scene, engine, seed, duration, interval, path, **kept)
         with open_trajectory(path) as data:
             return data.load()

@@ -172,7 +172,7 @@ def unmeasured(observable, kind, engine):
     if kind.wide and observable == "chemical_potential":
         return "a body that is inserted in so wide a container hardly ever overlaps"
     needs = OBSERVABLES[observable].needs
-    if needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings):
+    if needs == "fluxes" and "correlations" not in runs.options(kind, scene, settings, kind.run["interval"]):
         return "the engine does not tally the stress of such a scene"
     return None
 
