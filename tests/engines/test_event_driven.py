@@ -51,6 +51,26 @@ def test_a_head_on_collision_is_exact():
     assert sim.state.velocities.tolist() == [[0.0, 0.0], [1.0, 0.0]]
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("search", ["boxes", "pairs"])
+@pytest.mark.parametrize("radius", [1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize(("miss", "touches"), [(0.7, True), (1.5, False)])
+def test_tiny_particles_far_apart_touch_if_they_pass_within_a_diameter(
+    dimension, search, radius, miss, touches
+):
+    """With the usual discriminant, rounding alone decides below a diameter of 1e-8 distances."""
+    rng = np.random.default_rng(7)
+    for _ in range(10):
+        axis, side = np.linalg.qr(rng.normal(size=(dimension, dimension)))[0][:2]
+        centre = np.full(dimension, 5.0)
+        start = centre - 2.0 * axis + 2.0 * radius * miss * side
+        particles = [gp.Particle(start, 1.3 * axis, radius), gp.Particle(centre, -0.4 * axis, radius)]
+        scene = gp.Scene(gp.Container((10.0,) * dimension), particles=particles)
+        sim = gp.Simulation(scene, gp.EventDriven(search=search))
+        sim.advance(duration=1.5)
+        assert sim.tally.collisions == touches
+
+
 @pytest.mark.interpreted
 def test_a_wall_hit_gives_its_momentum_to_that_face():
     particles = [gp.Particle((2.0, 5.0), (-1.0, 0.0), 0.5, mass=3.0)]

@@ -16,6 +16,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from gaspart.kernels.model import IMAGE_BITS, NUMBER_BITS
+from gaspart.kernels.physics.contact import TINY
 from gaspart.kernels.simd import WIDTH, Lanes, fields, mask_of
 
 PLACES = 4  # number of particles of a box that are listed at once
@@ -101,18 +102,35 @@ def contact_times(
     pull = [particle[0].all(component) for component in pull] or [None] * d
     start, flights = bring_to_start(particle, other[2 * d], pull)
     late = start - other[2 * d]
-    products = []
+    relative = []
     for k, (x, v) in enumerate(flights):
         x_other, v_other = advance_flight(other[k], other[d + k], pull[k], late)
-        r = (x_other - x).plus_product(images[k], start.all(lengths[k]))
-        v = v_other - v
-        products.append((r * r, r * v, v * v))
+        relative.append(((x_other - x).plus_product(images[k], start.all(lengths[k])), v_other - v))
+    products = [(r * r, r * v, v * v) for r, v in relative]
     rr, rv, vv = (reduce(Lanes.__add__, terms) for terms in zip(*products, strict=True))
     sigma = particle[2 * d + 1] + other[2 * d + 1]
-    c = rr - sigma * sigma
+    ss = sigma * sigma
+    c = rr - ss
     meets = (rv < 0.0) & (rv * rv >= vv * c)
     root = c / ((rv * rv - vv * c).sqrt() - rv)
-    return (start + start.all(0.0).where(c <= 0.0, root)).where(meets, inf)
+    late = start.all(0.0).where(c <= 0.0, root).where(meets, inf)
+    return start + unless_tiny(late, relative, rr, rv, vv, ss)
+
+
+def unless_tiny(late: Lanes, relative: list, rr: Lanes, rv: Lanes, vv: Lanes, ss: Lanes) -> Lanes:
+    """Return the times until contact, computed from r x v for particles that are tiny beside their distance."""
+    builder = late.builder
+    tiny = (ss < rr * TINY) & (rv < 0.0)
+    entry_block = builder.basic_block
+    with builder.if_then(builder.icmp_unsigned("!=", mask_of(tiny), ir.IntType(WIDTH)(0)), likely=False):
+        areas = [r * v_m - r_m * v for k, (r, v) in enumerate(relative) for r_m, v_m in relative[:k]]
+        square = ss * vv - reduce(Lanes.__add__, [area * area for area in areas])
+        root = ((rr - ss) / (square.sqrt() - rv)).where(square >= 0.0, inf)
+        known, computed = root.where(tiny, late), builder.basic_block
+    phi = builder.phi(late.value.type)
+    phi.add_incoming(late.value, entry_block)
+    phi.add_incoming(known.value, computed)
+    return Lanes(builder, phi)
 
 
 def images_of(candidates: Lanes, axes: int) -> list[Lanes]:

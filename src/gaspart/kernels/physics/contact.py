@@ -41,6 +41,21 @@ def time_to_contact(rr, rv, vv, ss):
     return contact_root(rr, rv, vv, ss)
 
 
+TINY = 1e-10
+"""Squared contact distance, relative to the squared separation, below which rr - ss loses digits of ss."""
+
+
+@helper
+def time_to_tiny_contact(rr, rv, vv, ss, cross):
+    """Return the time until an approaching pair touches that is tiny beside its distance; inf if it never does.
+
+    The discriminant rv^2 - vv (rr - ss) would be rounding alone below a contact distance of 1e-8 rr^(1/2), so
+    it is computed as ss vv - |r x v|^2. `cross`: |r x v|^2.
+    """
+    square = ss * vv - cross
+    return (rr - ss) / (sqrt(square) - rv) if square >= 0.0 else inf
+
+
 @helper
 def exchange_equal(rr, rv):
     """Return the factor k of an elastic contact of equal masses. The velocities change by v1 += k r, v2 -= k

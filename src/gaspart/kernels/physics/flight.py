@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from gaspart.kernels.compile.policy import inner_helper, kernel
+from gaspart.kernels.compile.policy import inner_helper, inner_kernel, kernel
 from gaspart.kernels.physics.ballistic import advance_coordinate, time_to_contact_pulled
-from gaspart.kernels.physics.contact import time_to_contact
+from gaspart.kernels.physics.contact import TINY, time_to_contact, time_to_tiny_contact
 
 
 @inner_helper
@@ -100,31 +100,31 @@ def restart_clocks(flights, time, space, gravity):
 
 
 @inner_helper
+def _gap_and_velocity(flights, i, j, k, start, offset, space, gravity):
+    """Return the separation and relative velocity of two particles along an axis at a time."""
+    late_i, late_j = start - flights[i].clock, start - flights[j].clock
+    x_i, x_j = flights[i].position[k], flights[j].position[k]
+    v_i, v_j = flights[i].velocity[k], flights[j].velocity[k]
+    if gravity is None:
+        return (x_j + v_j * late_j) - (x_i + v_i * late_i) + offset[k], v_j - v_i
+    pull_i = acceleration_of(flights, i, k, space, gravity)
+    pull_j = acceleration_of(flights, j, k, space, gravity)
+    r = advance_coordinate(x_j, v_j, pull_j, late_j) - advance_coordinate(x_i, v_i, pull_i, late_i) + offset[k]
+    return r, (v_j + pull_j * late_j) - (v_i + pull_i * late_i)
+
+
+@inner_helper
 def encounter(flights, i, j, offset, space, gravity):
     """Return time and invariants of two particles at the later of their clocks. The invariants are the
     products rr, rv, vv, ra, va, aa of their separation r, relative velocity v and acceleration a. `offset`:
     (d,), displacement of particle j.
     """
     start = max(flights[i].clock, flights[j].clock)
-    late_i = start - flights[i].clock
-    late_j = start - flights[j].clock
     rr = rv = vv = ra = va = aa = 0.0
     for k in range(len(space.lengths)):
-        x_i, x_j = flights[i].position[k], flights[j].position[k]
-        v_i, v_j = flights[i].velocity[k], flights[j].velocity[k]
-        if gravity is None:
-            v = v_j - v_i
-            r = (x_j + v_j * late_j) - (x_i + v_i * late_i) + offset[k]
-        else:
-            pull_i = acceleration_of(flights, i, k, space, gravity)
-            pull_j = acceleration_of(flights, j, k, space, gravity)
-            a = pull_j - pull_i
-            v = (v_j + pull_j * late_j) - (v_i + pull_i * late_i)
-            r = (
-                advance_coordinate(x_j, v_j, pull_j, late_j)
-                - advance_coordinate(x_i, v_i, pull_i, late_i)
-                + offset[k]
-            )
+        r, v = _gap_and_velocity(flights, i, j, k, start, offset, space, gravity)
+        if gravity is not None:
+            a = acceleration_of(flights, j, k, space, gravity) - acceleration_of(flights, i, k, space, gravity)
             ra += r * a
             va += v * a
             aa += a * a
@@ -145,7 +145,22 @@ def time_of_contact(flights, i, j, offset, space, gravity):
     if gravity is not None:
         if aa > 0.0:
             return start + time_to_contact_pulled(rr - ss, rv, vv, ra, va, aa)
+    if ss < TINY * rr and rv < 0.0:
+        return start + _time_of_tiny_contact(flights, i, j, offset, space, start, rr, rv, vv, ss, gravity)
     return start + time_to_contact(rr, rv, vv, ss)
+
+
+@inner_kernel
+def _time_of_tiny_contact(flights, i, j, offset, space, start, rr, rv, vv, ss, gravity):
+    """Return the time from `start` to the contact of two particles that are tiny beside their distance."""
+    cross = 0.0
+    for k in range(len(space.lengths)):
+        r_k, v_k = _gap_and_velocity(flights, i, j, k, start, offset, space, gravity)
+        for m in range(k):
+            r_m, v_m = _gap_and_velocity(flights, i, j, m, start, offset, space, gravity)
+            area = r_k * v_m - r_m * v_k
+            cross += area * area
+    return time_to_tiny_contact(rr, rv, vv, ss, cross)
 
 
 # Planes across an axis at the boundaries of equal bins. An impulse counts for all planes above it.
