@@ -6,17 +6,17 @@ time of those of their rule that have ended, and before one has ended, with a us
 
 from __future__ import annotations
 
-import sys
-from collections import Counter
-from logging import LogRecord
-from typing import TextIO
+from collections import Counter, defaultdict
+from logging import LogRecord, getLogger
+from math import inf
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-USUAL = {"warm": 8.0, "simulate": 3.0, "compute": 30.0, "figure": 8.0, "animate": 20.0}
+USUAL = {"warm": 8.0, "simulate": 3.0, "compute": 30.0, "figure": 8.0, "animate": 20.0, "play": 30.0}
 """Seconds of a step of a rule, before one has ended; 1 s for others."""
 _BETWEEN = 10.0  # seconds between two lines
+_LOGGER = getLogger("snakemake.logging")
 
 
 class TimeLeft:
@@ -25,7 +25,7 @@ class TimeLeft:
     def __init__(self) -> None:
         self._left: Counter[str] = Counter()
         self._running: dict[int, tuple[str, float]] = {}
-        self._spent: Counter[str] = Counter()
+        self._spent: defaultdict[str, float] = defaultdict(float)
         self._ended: Counter[str] = Counter()
         self._first = 0.0
 
@@ -78,17 +78,19 @@ class LogHandler(LogHandlerBase):
 
     def __post_init__(self) -> None:
         self._time_left = TimeLeft()
-        self._latest = -_BETWEEN
-        self._stream: TextIO = sys.stdout if self.common_settings.stdout else sys.stderr
+        self._latest = -inf
 
     def emit(self, record: LogRecord) -> None:
-        event, now = getattr(record, "event", None), record.created
+        fields, now = record.__dict__, record.created
+        event = fields.get("event")
         if event == LogEvent.RUN_INFO:
-            self._time_left.plan({rule: n for rule, n in record.stats.items() if rule != "total"})
+            self._time_left.plan({rule: n for rule, n in fields["stats"].items() if rule != "total"})
         elif event == LogEvent.JOB_INFO:
-            self._time_left.start(record.jobid, record.rule_name, now)
+            self._time_left.start(fields["jobid"], fields["rule_name"], now)
         elif event == LogEvent.JOB_FINISHED:
-            self._time_left.end(record.job_id, now)
-        elif event == LogEvent.PROGRESS and record.done < record.total and now > self._latest + _BETWEEN:
-            self._latest = now
-            print(describe(*self._time_left.seconds(now)), file=self._stream, flush=True)
+            self._time_left.end(fields["job_id"], now)
+        elif event == LogEvent.PROGRESS and fields["done"] < fields["total"]:
+            if now > self._latest + _BETWEEN:
+                self._latest = now
+                # by Snakemake's own handlers, which write whole lines
+                _LOGGER.info(describe(*self._time_left.seconds(now)))

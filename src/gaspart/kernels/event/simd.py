@@ -118,7 +118,7 @@ def contact_times(
 
 
 def unless_tiny(late: Lanes, relative: list, rr: Lanes, rv: Lanes, vv: Lanes, ss: Lanes) -> Lanes:
-    """Return the times until contact, computed from r x v for particles that are tiny beside their distance."""
+    """Return the times until contact; those of particles that are tiny beside their distance from r x v."""
     builder = late.builder
     tiny = (ss < rr * TINY) & (rv < 0.0)
     entry_block = builder.basic_block

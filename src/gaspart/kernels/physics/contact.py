@@ -47,7 +47,7 @@ TINY = 1e-10
 
 @helper
 def time_to_tiny_contact(rr, rv, vv, ss, cross):
-    """Return the time until an approaching pair touches that is tiny beside its distance; inf if it never does.
+    """Return the time until an approaching pair that is tiny beside its distance touches; inf if it does not.
 
     The discriminant rv^2 - vv (rr - ss) would be rounding alone below a contact distance of 1e-8 rr^(1/2), so
     it is computed as ss vv - |r x v|^2. `cross`: |r x v|^2.

@@ -109,7 +109,11 @@ def _gap_and_velocity(flights, i, j, k, start, offset, space, gravity):
         return (x_j + v_j * late_j) - (x_i + v_i * late_i) + offset[k], v_j - v_i
     pull_i = acceleration_of(flights, i, k, space, gravity)
     pull_j = acceleration_of(flights, j, k, space, gravity)
-    r = advance_coordinate(x_j, v_j, pull_j, late_j) - advance_coordinate(x_i, v_i, pull_i, late_i) + offset[k]
+    r = (
+        advance_coordinate(x_j, v_j, pull_j, late_j)
+        - advance_coordinate(x_i, v_i, pull_i, late_i)
+        + offset[k]
+    )
     return r, (v_j + pull_j * late_j) - (v_i + pull_i * late_i)
 
 
@@ -124,7 +128,9 @@ def encounter(flights, i, j, offset, space, gravity):
     for k in range(len(space.lengths)):
         r, v = _gap_and_velocity(flights, i, j, k, start, offset, space, gravity)
         if gravity is not None:
-            a = acceleration_of(flights, j, k, space, gravity) - acceleration_of(flights, i, k, space, gravity)
+            a = acceleration_of(flights, j, k, space, gravity) - acceleration_of(
+                flights, i, k, space, gravity
+            )
             ra += r * a
             va += v * a
             aa += a * a
@@ -146,13 +152,14 @@ def time_of_contact(flights, i, j, offset, space, gravity):
         if aa > 0.0:
             return start + time_to_contact_pulled(rr - ss, rv, vv, ra, va, aa)
     if ss < TINY * rr and rv < 0.0:
-        return start + _time_of_tiny_contact(flights, i, j, offset, space, start, rr, rv, vv, ss, gravity)
+        cross = _cross_square(flights, i, j, start, offset, space, gravity)
+        return start + time_to_tiny_contact(rr, rv, vv, ss, cross)
     return start + time_to_contact(rr, rv, vv, ss)
 
 
 @inner_kernel
-def _time_of_tiny_contact(flights, i, j, offset, space, start, rr, rv, vv, ss, gravity):
-    """Return the time from `start` to the contact of two particles that are tiny beside their distance."""
+def _cross_square(flights, i, j, start, offset, space, gravity):
+    """Return |r x v|^2 of the separation and the relative velocity of two particles at a time."""
     cross = 0.0
     for k in range(len(space.lengths)):
         r_k, v_k = _gap_and_velocity(flights, i, j, k, start, offset, space, gravity)
@@ -160,7 +167,7 @@ def _time_of_tiny_contact(flights, i, j, offset, space, start, rr, rv, vv, ss, g
             r_m, v_m = _gap_and_velocity(flights, i, j, m, start, offset, space, gravity)
             area = r_k * v_m - r_m * v_k
             cross += area * area
-    return time_to_tiny_contact(rr, rv, vv, ss, cross)
+    return cross
 
 
 # Planes across an axis at the boundaries of equal bins. An impulse counts for all planes above it.
