@@ -65,7 +65,7 @@ def test_a_run_says_so_and_goes_on_to_the_same_bits(tmp_path):
 def test_the_workflow_says_so_and_goes_on_to_the_same_bits(tmp_path):
     workspace = copy_of_project(tmp_path)
     command = [sys.executable, "-m", "snakemake", "--cores", "2", *SMOKE, "--", TARGET]
-    full, empty = twice(tmp_path / "results", 600, tmp_path / "out", command, workspace.path / "src")
+    full, empty = twice(tmp_path / "results", 150, tmp_path / "out", command, workspace.path / "src")
     assert "exit code 1" in full
     lines = [line for line in full.splitlines() if line.startswith("gaspart: simulate")]
     assert lines and all("No space left on device" in line for line in lines)
