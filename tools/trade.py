@@ -1,7 +1,9 @@
 """Trade of the reproduction: its processor time against what its claims decide.
 
-python tools/trade.py 0.25 results     record a finished run of this effort in docs/trade.csv
-python tools/trade.py                  draw what is recorded: docs/trade.png
+python tools/trade.py 0.25 results 36.6 25.2     record a run: effort, results, minutes of CPU and of wall
+python tools/trade.py                            draw what is recorded: docs/trade.png
+
+The minutes are those that `time make EFFORT=...` prints (user and sys), with all runs that the results go on from.
 """
 
 from __future__ import annotations
@@ -11,25 +13,11 @@ import math
 import sys
 from pathlib import Path
 
-from gaspart.reproduction import job_time
 from gaspart.reproduction.claims import table
 
 TABLE = Path("docs/trade.csv")
-RULES = {"kernels": ("warm",), "simulations": ("simulate",), "timings": ("compute",), "figures": ("figure",)}
-"""Rules of the workflow by kind of work."""
 CONCLUSIVE = {"agrees", "disagrees", "reproduced", "source in error"}
 """Verdicts that longer runs would not change but by chance."""
-
-
-def minutes(results: Path) -> dict[str, float]:
-    """Return the CPU minutes of each kind of work, from the logs of its jobs; `other` has films and pages."""
-    spent = dict.fromkeys([*RULES, "other"], 0.0)
-    kinds = {rule: kind for kind, rules in RULES.items() for rule in rules}
-    for log in (results / "logs").rglob("*.log"):
-        rule, *names = log.relative_to(results / "logs").with_suffix("").parts
-        if used := job_time.read_used(results, rule, *names):
-            spent[kinds.get(rule, "other")] += used.seconds / 60.0
-    return spent
 
 
 def verdicts(results: Path) -> dict[str, float]:
@@ -48,10 +36,9 @@ def verdicts(results: Path) -> dict[str, float]:
     }
 
 
-def record(effort: str, results: Path) -> None:
+def record(effort: str, results: Path, cpu: str, wall: str) -> None:
     """Write the row of a run into the table; a row of the same effort is replaced."""
-    spent = minutes(results)
-    row = {"effort": effort, **verdicts(results), "CPU min": sum(spent.values()), **spent}
+    row = {"effort": effort, "CPU min": cpu, "wall min": wall, **verdicts(results)}
     text = {name: f"{value:.3g}" if isinstance(value, float) else str(value) for name, value in row.items()}
     rows = {one["effort"]: one for one in read()} | {effort: text}
     with TABLE.open("w", newline="", encoding="utf-8") as file:
@@ -91,6 +78,7 @@ def draw() -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) == 3:
-        record(sys.argv[1], Path(sys.argv[2]))
+    if len(sys.argv) > 1:
+        effort, results, cpu, wall = sys.argv[1:]
+        record(effort, Path(results), cpu, wall)
     draw()
