@@ -3,7 +3,7 @@
 python tools/trade.py 0.25 results 36.6 25.2     record a run: effort, results, minutes of CPU and of wall
 python tools/trade.py                            draw what is recorded: docs/trade.png
 
-The minutes are those that `time make EFFORT=...` prints (user and sys), with all runs that the results go on from.
+The minutes are those of `time make EFFORT=...` (user and sys), with all runs that the results go on from.
 """
 
 from __future__ import annotations
