@@ -92,16 +92,6 @@ def test_a_light_sphere_in_maxwells_gas_has_equipartition_and_sonines_diffusion(
     assert slopes.mean() == pytest.approx(1.01895, abs=4.0 * slopes.std() / count**0.5)
 
 
-def test_the_initial_friction_is_that_of_the_closed_form():
-    """-d<V(0).V(t)>/dt at 0, of spheres in equilibrium, in a time in which few are hit."""
-    share, count, mass = 0.05, 20_000, 2.0
-    found = tagged_paths([MAXWELL] * 200, share, hits(1.0, mass), mass, count, seed=2)
-    v = found.velocities[120:]
-    lost = ((v[:-1] - v[1:]) * v[:-1]).sum(axis=2).mean(axis=0) / (v[:-1] ** 2).sum(axis=2).mean()
-    error = lost.std() / count**0.5
-    assert lost.mean() == pytest.approx(1.0 - np.exp(-share), abs=4.0 * error)
-
-
 def test_a_heavy_sphere_feels_the_mean_speed_of_the_gas():
     """M g V = (4/3) pi a^2 n m <c> V whatever the distribution of speeds: of equal speeds it is sqrt(3 pi /
     8) = 1.085 of that in Maxwell's gas of the same energy."""
