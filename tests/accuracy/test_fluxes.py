@@ -60,9 +60,6 @@ def test_the_heat_flux_is_not_the_pressure(tmp_path):
     [
         (KINDS["plates"].scene, "heat_flux", 0.3),
         (KINDS["plates"].scene, "wall_shear", 0.3),
-        pytest.param(HEATED, "heat_flux", 0.2, marks=pytest.mark.thorough),
-        pytest.param(SLIDING, "wall_shear", 0.3, marks=pytest.mark.thorough),
-        pytest.param(SLIDING, "velocity", 0.3, marks=pytest.mark.thorough),
         pytest.param(COUETTE, "wall_shear", 0.1, marks=pytest.mark.thorough),
         pytest.param(COUETTE, "velocity", 0.3, marks=pytest.mark.thorough),
     ],

@@ -379,13 +379,6 @@ def test_a_column_with_a_dense_floor():
     assert made.scatter.placed and not made.scatter.drawn
 
 
-@pytest.mark.thorough
-def test_what_is_advised_has_a_pilot():
-    for scene, observable in ((BOX, "pressure"), (DILUTE, "collision_rate"), (bed(0.3), "temperature")):
-        made = plan.plan_from_pilots(scene, observable, 0.2, pilot_seconds=0.4)
-        assert made.best.candidate.engine in [one.engine for one in made.pilots]
-
-
 def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
     """As many as there are engines that may be advised, within the time for all of them."""
     made, whole = [], pilot.run_pilot

@@ -44,16 +44,6 @@ def test_unmeasured_time_steps_have_no_bound():
     assert math.isinf(table.seconds(3, 0.45, "step", "float64", 0.08))
 
 
-@pytest.mark.parametrize(
-    ("dimension", "fractions"), [(3, (0.01, 0.1, 0.3, 0.45)), (2, (0.01, 0.1, 0.3, 0.6))]
-)
-def test_a_contact_costs_less_in_a_denser_gas(dimension, fractions):
-    """The flights between contacts are shorter, and neighbour lists know where to look."""
-    times = [table.seconds(dimension, fraction, "event") for fraction in fractions]
-    assert times == sorted(times, reverse=True)
-    assert times[-1] < 0.8 * times[-2]
-
-
 @pytest.mark.parametrize("eta", [1e-4, 0.001, 0.01])
 def test_noise_of_the_pressure_of_a_dilute_gas_is_that_of_independent_contacts(eta):
     """Z - 1 is a sum over contacts whose momenta have <p^2> / <p>^2 = 4 / pi: the variance of Z is that of

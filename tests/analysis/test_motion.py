@@ -72,19 +72,6 @@ def test_a_slope_that_falls_is_no_coefficient(tmp_path):
         A.diffusion_coefficient(run(tmp_path, scene, 100.0))
 
 
-@pytest.mark.parametrize("side", [6.3, 8.1, 22.0])
-def test_a_fluid_of_spheres_is_not_refused(tmp_path, side):
-    gas = gp.Species(200, 0.5, temperature=1.0, arrangement="lattice")
-    scene = gp.Scene(gp.Container((side,) * 3, "periodic"), [gas])
-    duration = {6.3: 15.0, 8.1: 60.0, 22.0: 1000.0}[side]
-    for seed in range(3):
-        (tmp_path / str(seed)).mkdir()
-        found = A.diffusion_coefficient(
-            run(tmp_path / str(seed), scene, duration, duration / 300.0, seed), start=0.0
-        )
-        assert abs(float(found.deviation)) < 4.0
-
-
 def test_the_zero_momentum_along_each_axis_is_allowed_for(tmp_path):
     """<v^2> / d of few particles in a slit is kT / m, as without the condition on two of the axes."""
     scene = gp.Scene(
@@ -317,13 +304,6 @@ def test_they_are_means_over_pairs_of_samples_that_end_in_the_measured_part(tmp_
         assert float(found.estimate[lag]) == pytest.approx(expected, rel=1e-12, abs=1e-12)
     assert found["lag"].values == pytest.approx(INTERVAL * np.arange(LAGS + 1))
     assert (found.error.values[1:] > 0.0).all() and found.theory is not None
-
-
-def test_at_lag_0_the_velocities_of_alike_discs_have_the_temperature(tmp_path):
-    """Which is exact: their energy about the centre of mass is conserved."""
-    found = A.velocity_autocorrelation(accumulated_run(tmp_path / "run.nc", discs()))
-    assert float(found.estimate[0]) == pytest.approx(2.0, rel=1e-9)
-    assert float(found.error[0]) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_between_walls_nothing_is_taken_off(tmp_path):

@@ -41,20 +41,6 @@ def test_effusion(streamed):
     assert float(found.estimate[0]) == pytest.approx(last.sum() / 4.0)
 
 
-@pytest.mark.thorough
-def test_the_flux_of_a_mirrored_or_turned_gas(streamed):
-    """Its sign follows the axis, as its name does."""
-    with_x = A.particle_flux(streamed, "x", start=0.0)
-    mirrored = chamber(region=((20.0, 0.0), (40.0, 20.0)))
-    simulation = gp.Simulation(mirrored, gp.EventDriven(), seed=1)
-    simulation.advance(duration=4.0)
-    back = A.particle_flux(simulation, "x", start=0.0)
-    assert float(back.theory[0]) == pytest.approx(-float(with_x.theory[0]), rel=0.02)
-    assert abs(float(back.deviation[0])) < 3.0 and float(back.estimate[0]) < 0.0
-    elsewhere = A.particle_flux(streamed, "x", at=10.0, start=0.0)
-    assert elsewhere.theory is None or float(elsewhere.theory[0]) != float(with_x.theory[0])
-
-
 def test_nothing_passes_a_closed_box_on_average():
     scene = gp.Scene(gp.Container((6.0, 6.0, 6.0)), [gp.Species(60, 0.5, temperature=1.0)])
     simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)

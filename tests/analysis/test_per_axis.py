@@ -26,13 +26,6 @@ def test_displacements_along_axes_sum_to_the_whole(path):
     assert np.allclose(found.estimate.isel(lag=5), lag, rtol=1e-6)
 
 
-def test_each_axis_is_plotted_by_its_name(path):
-    found = gp.analysis.mean_squared_displacement(path, lags=20, per_axis=True)
-    labels = found.plot(theory=True).get_legend_handles_labels()[1]
-    assert labels == ["theory", "x", "y", "z"]
-    assert "<img" in found._repr_html_()
-
-
 def test_diffusion_along_axes_has_the_mean_of_all_and_agrees_with_theory(path):
     whole = gp.analysis.diffusion_coefficient(path)
     found = gp.analysis.diffusion_coefficient(path, per_axis=True)

@@ -45,19 +45,6 @@ def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_r
     assert float(found.estimate.sel(face="y low")) == pytest.approx(weight / 19.0, rel=1e-5)
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(time_step=0.005)])
-def test_without_rest_the_impulses_balance_gravity(engine):
-    species = [gp.Species(60, 0.5, temperature=4.0)]
-    scene = gp.Scene(gp.Container((16.0, 16.0)), species, gravity=(0.3, -1.0))
-    simulation = gp.Simulation(scene, engine, seed=1)
-    simulation.advance(duration=40.0)
-    found = A.wall_pressure(simulation)
-    plain = simulation.tally.wall_impulse[:4] / 40.0 / 15.0
-    assert np.isfinite(found.estimate).all()
-    assert found.estimate.values == pytest.approx(np.abs(plain), rel=0.15, abs=0.1)
-
-
 def warm(**faces):
     """Discs without friction that never rest, over a hot floor."""
     faces = {name: gp.Thermal(temperature) for name, temperature in faces.items()}

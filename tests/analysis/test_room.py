@@ -190,14 +190,6 @@ def test_bins_inside_an_obstacle_are_empty_of_room():
     assert len(blocked) and set(blocked) <= set(range(11, 19))
 
 
-@pytest.mark.interpreted
-def test_without_obstacles_the_sum_is_the_number_of_particles():
-    species = [gp.Species(20, 0.5, temperature=1.0), gp.Species(10, 1.0, temperature=1.0)]
-    simulation = gp.Simulation(gp.Scene(gp.Container((20.0, 20.0)), species), gp.EventDriven(), seed=1)
-    simulation.advance(duration=10.0)
-    assert float(A.profile(simulation, bins=20).estimate.sum()) * 20.0 == pytest.approx(30.0)
-
-
 def test_some_particles_of_one_kind_stand_for_all(tmp_path):
     scene = gp.Scene(gp.Container((20.0, 20.0), "periodic"), [gp.Species(50, 0.5, temperature=1.0)])
     path = gp.run(scene, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "a.nc", follow=10)

@@ -110,14 +110,6 @@ def file(tmp_path_factory):
     return gp.run(scene, gp.EventDriven(), 1, 100.0, 0.25, folder / "run.nc", displacements=True)
 
 
-def test_short_times_have_the_thermal_speed_of_the_species(file):
-    for species, mass in ((0, 1.0), (1, 4.0)):
-        found = A.velocity_autocorrelation(file, lags=4, species=species)
-        assert float(found.estimate[0]) == pytest.approx(1.0 / mass, rel=0.1)
-    light, heavy = (float(A.diffusion_coefficient(file, species=k).estimate) for k in (0, 1))
-    assert light > heavy > 0.0
-
-
 def test_a_selection_is_the_mean_of_its_parts(file):
     light, heavy = range(1, 49), range(61, 109)
     parts = [A.mean_squared_displacement(file, lags=16, particles=one).estimate for one in (light, heavy)]

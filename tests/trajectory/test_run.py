@@ -16,7 +16,7 @@ from gaspart.trajectory import amber, opening, recording, run
 from gaspart.trajectory import run as stage
 from gaspart.trajectory.amber import stored_header
 from gaspart.trajectory.opening import checkpoint_path, partial_path
-from gaspart.trajectory.recipe import multiple, read_recipe
+from gaspart.trajectory.recipe import read_recipe
 
 
 def test_no_frame_is_lost_to_rounding(tmp_path):
@@ -56,14 +56,6 @@ def test_invalid_settings_are_refused_before_anything_is_written(tmp_path, chang
     with pytest.raises(gp.SceneError, match=complaint.replace("(", r"\(")):
         gp.run(**settings)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_integer_multiples():
-    assert multiple("a", 0.3, "b", 0.1) == 3
-    assert multiple("a", 1e9, "b", 0.1) == 10**10
-    for value in (0.05, 0.30001, 1e300):
-        with pytest.raises(gp.SceneError, match="a = .*: must be a whole multiple of b, 0.1"):
-            multiple("a", value, "b", 0.1)
 
 
 def test_a_complete_trajectory_is_kept_and_another_run_never_overwrites_it(tmp_path):

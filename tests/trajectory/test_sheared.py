@@ -48,14 +48,6 @@ def test_the_response_is_that_of_the_pressure_tensor(path):
     assert float(viscosity["shear_viscosity_theory"]) == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["msd", "rdf", "compressibility_factor", "bulk_viscosity"])
-def test_what_has_no_meaning_in_a_sheared_gas_is_refused_in_one_line(path, name):
-    functions = {"msd": gp.analysis.mean_squared_displacement, "rdf": gp.analysis.rdf}
-    measure = functions.get(name) or getattr(gp.analysis, name)
-    with pytest.raises(gp.SceneError, match=r"faces.y_high = 'lees_edwards': this observable is not defined"):
-        measure(path)
-
-
 def test_a_lag_has_no_meaning_for_the_response(path):
     with pytest.raises(gp.SceneError, match="lag = 0.5: is that of fluctuations"):
         gp.analysis.shear_viscosity(path, lag=0.5)
