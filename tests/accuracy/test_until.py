@@ -323,10 +323,7 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
             {"engine": gp.DSMC()},
             "until = 'Z': observable: is 1 of particles without extent, whatever happens",
         ),
-        (
-            {"scene": gas(3, 8, 0.1, fixed=True)},
-            "until = 'Z': species.fixed: carry a part of the pressure",
-        ),
+        ({"scene": gas(3, 8, 0.1, fixed=True)}, "until = 'Z': species.fixed: carry a part of the pressure"),
         (
             {"scene": FROM_REST, "until": gp.Accuracy("collision_rate", 0.1), "sample_interval": None},
             "sample_interval = None: must be given: nothing moves at the start",

@@ -188,9 +188,7 @@ def test_a_deviation_is_the_difference_of_two_runs_over_their_first_distance(con
     h, ends = 1e-7, []
     for sign in (1.0, -1.0):
         moved = replace(
-            start,
-            positions=start.positions + sign * h * shift,
-            velocities=start.velocities + sign * h * push,
+            start, positions=start.positions + sign * h * shift, velocities=start.velocities + sign * h * push
         )
         beside = gp.EventDriven().start(scene, moved)
         beside.advance(1.2)

@@ -16,10 +16,7 @@ from gaspart.errors import SceneError
 @pytest.fixture(scope="module")
 def sheared(tmp_path_factory):
     """Rare discs between plates that slide against one another, and heat what they hit."""
-    faces = {
-        "y_low": gp.Thermal(1.0, velocity=(-0.5, 0.0)),
-        "y_high": gp.Thermal(3.0, velocity=(0.5, 0.0)),
-    }
+    faces = {"y_low": gp.Thermal(1.0, velocity=(-0.5, 0.0)), "y_high": gp.Thermal(3.0, velocity=(0.5, 0.0))}
     container = gp.Container((30.0, 20.0), ("periodic", "wall"))
     scene = gp.Scene(container, [gp.Species(120, 0.5, temperature=1.5)], faces=faces)
     path = tmp_path_factory.mktemp("sheared") / "sheared.nc"

@@ -15,10 +15,7 @@ A = gp.analysis
 def couette(tmp_path_factory):
     """Discs between plates that slide at -1.5 and 1.5: about the flow 1.11 at the plates, 1.29 in the middle,
     with it 1.29 to 1.99."""
-    faces = {
-        "x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)),
-        "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5)),
-    }
+    faces = {"x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5))}
     container = gp.Container((20.0, 20.0), ("wall", "periodic"))
     scene = gp.Scene(container, [gp.Species(200, 0.5, temperature=1.0)], faces=faces)
     path = tmp_path_factory.mktemp("couette") / "run.nc"

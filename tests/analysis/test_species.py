@@ -100,10 +100,7 @@ NAME = "diffusion_coefficient"
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     """A heavy sphere, 60 light and 60 heavier ones in a periodic cube."""
-    kinds = [
-        gp.Species(60, 0.5, temperature=1.0),
-        gp.Species(60, 0.5, mass=4.0, temperature=1.0),
-    ]
+    kinds = [gp.Species(60, 0.5, temperature=1.0), gp.Species(60, 0.5, mass=4.0, temperature=1.0)]
     alone = gp.Particle((4.5, 4.5, 4.5), (0.1, 0.0, 0.0), 0.5, mass=20.0)
     scene = gp.Scene(gp.Container((SIDE,) * 3, "periodic"), kinds, [alone])
     folder = tmp_path_factory.mktemp("selected")

@@ -10,10 +10,7 @@ from gaspart import theory
 from gaspart.theory.finite_size import finite_size_remainder, insertion_potential, pair_contact_value
 from gaspart.theory.tables import insertion_finite_size_correction
 
-KNOWN = [
-    (3, 108, 0.5113, 13.74, 0.03),
-    (3, 108, 0.47, 10.562, 0.020),
-]
+KNOWN = [(3, 108, 0.5113, 13.74, 0.03), (3, 108, 0.47, 10.562, 0.020)]
 """Z of other runs of the event-driven engine: dimension, number, packing fraction, Z and its error."""
 
 

@@ -10,10 +10,7 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.theory.state import adiabatic_temperature, constant_enthalpy_factor
 
-EQUATIONS = {
-    2: ["henderson", "liu"],
-    3: ["carnahan_starling", "kolafa_1986", "kolafa_labik_malijevsky"],
-}
+EQUATIONS = {2: ["henderson", "liu"], 3: ["carnahan_starling", "kolafa_1986", "kolafa_labik_malijevsky"]}
 NAMED = [(dimension, name) for dimension, names in EQUATIONS.items() for name in names]
 
 
