@@ -133,17 +133,6 @@ def _run(scene, path, seed, collisions, engine=None):
 
 
 @pytest.mark.thorough
-def test_species_alike_diffuse_as_single_particles(tmp_path):
-    """Labels do not matter to the motion, so D_12 is D, exactly; both are of the same runs."""
-    ratios = []
-    for seed in range(6):
-        path = _run(_scene(0.2, _kind(40), _kind(88)), tmp_path / f"{seed}.nc", seed, 4000.0)
-        mutual, single = gp.analysis.mutual_diffusion(path), gp.analysis.diffusion_coefficient(path)
-        ratios.append(float(mutual.estimate) / float(single.estimate))
-    assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * 0.075 / math.sqrt(6))  # 7.5 % for each run
-
-
-@pytest.mark.thorough
 def test_dilute_gas_of_unequal_masses(tmp_path):
     """Chapman and Enskog's value, to which higher approximations add some 3 %."""
     scene = _scene(0.01, _kind(100), _kind(100, mass=8.0))

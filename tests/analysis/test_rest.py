@@ -45,40 +45,11 @@ def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_r
     assert float(found.estimate.sel(face="y low")) == pytest.approx(weight / 19.0, rel=1e-5)
 
 
-def warm(**faces):
-    """Discs without friction that never rest, over a hot floor."""
-    faces = {name: gp.Thermal(temperature) for name, temperature in faces.items()}
-    species = [gp.Species(40, 0.3, temperature=1.0)]
-    return gp.Scene(gp.Container((6.0, 12.0)), species, gravity=(0.0, -0.3), faces=faces)
-
-
 def rough(normal, **more):
     """Discs whose friction at the side walls carries part of their weight."""
     law = gp.Restitution(normal=normal, tangential=0.3)
     species = [gp.Species(40, 0.5, temperature=1.0)]
     return gp.Scene(gp.Container((6.0, 20.0)), species, gravity=GRAVITY, restitution=law, **more)
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize(
-    "scene",
-    [
-        warm(y_low=4.0, x_low=0.5, x_high=0.5),
-        warm(x_low=1.0),
-        pytest.param(rough(1.0), marks=pytest.mark.thorough),
-        pytest.param(rough(0.9, faces={"y_low": gp.Vibrating(0.4, 0.8)}), marks=pytest.mark.thorough),
-    ],
-)
-@pytest.mark.parametrize("measure", [A.wall_force, A.wall_pressure])
-def test_without_rest_the_force_is_that_of_the_impulses(scene, measure):
-    """Side walls exert forces along gravity, so that no balance tells what rests."""
-    simulation = gp.Simulation(scene, seed=1)
-    simulation.advance(10.0)
-    found = measure(simulation, start=0.0).estimate.values
-    impulses = simulation.tally.wall_impulse[:4] / 10.0
-    if measure is A.wall_force:
-        assert found == pytest.approx(impulses, rel=1e-12)
-    assert np.isfinite(found).all()
 
 
 @pytest.mark.thorough
