@@ -321,18 +321,11 @@ def test_what_is_stored_falls_faster_than_noise():
         (gp.Scene(BOX.container, [gp.Species(40, 0.5)]), "pressure", "moving particles"),
         (gp.Scene(BOX.container), "pressure", "count = 0"),
         (BOX, "Z", "observable = 'Z': container.boundary"),
-        (
-            BOX,
-            "shear_viscosity",
-            "container.boundary: the stress, viscosity and conductivity need a periodic",
-        ),
-        (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
         (BOX, "pressure:z low", "must be one of the walls, x low, x high, y low, y high"),
         (BOX, "collision_rate:x low", "collision_rate is not of a wall"),
         (SHEARED, "vacf", "not defined where images of the particles slide"),
         (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),
         (replace(BOX, faces={"y_low": gp.Vibrating(0.1, 1.0)}), "pressure", "nothing takes the energy"),
-        (replace(BOX, thermostat=gp.Thermostat(1.0, 0.1)), "pressure", "nothing takes the energy"),
         (BOX, "Q", "observable = 'Q': unknown observable"),
     ],
 )

@@ -30,14 +30,6 @@ def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
     assert {row["dimension"] for row in table.read()} == {2, 3}
 
 
-def test_longer_steps_lose_more_contacts():
-    steps = [0.04, 0.08, 0.16, 0.32]
-    for fraction in (0.01, 0.03, 0.1):
-        lost = [table.bias(3, fraction, "float64", step, "collision_rate") for step in steps]
-        assert lost == sorted(lost)
-        assert lost[-1] > 2.0 / 3.0 * 0.9 * 0.32**2
-
-
 def test_unmeasured_time_steps_have_no_bound():
     assert math.isinf(table.bias(3, 0.45, "float64", 0.08, "Z"))
     assert math.isinf(table.bias(3, 0.1, "float64", 0.123, "Z"))

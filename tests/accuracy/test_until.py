@@ -308,10 +308,6 @@ def test_the_default_interval_is_the_time_between_collisions(tmp_path):
         ({"path": None}, "path = None: must be given"),
         ({"follow": 8}, "until = 'Z': follow: needs all"),
         (
-            {"until": gp.Accuracy("pressure", 0.1)},
-            "until = 'pressure': container.boundary: has no walls: measure comp",
-        ),
-        (
             {"scene": WALLS, "until": gp.Accuracy("pressure", 0.1, face="x_lo")},
             "until = 'pressure:x lo': must be one of the walls, x low, x high, y low",
         ),

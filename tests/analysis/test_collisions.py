@@ -58,13 +58,6 @@ def test_the_contact_value_is_that_of_theory(data):
     assert abs(chi.value - float(theory.contact_value(0.2, dimension)) * float(finite)) < 3 * chi.error
 
 
-def test_impact_parameters_are_uniform(data):
-    """The offset's power d - 1 is uniform, for the flux of pairs through a disc (a line) is."""
-    cosine = (data["approach"] / data["relative_speed"]).values
-    offset = np.sqrt(1.0 - cosine**2) ** (data.sizes["axis"] - 1)
-    assert stats.kstest(offset, "uniform").pvalue > 0.001
-
-
 def test_invalid_input_is_refused():
     with pytest.raises(gp.SceneError, match="gravity"):
         gp.collision_data(gp.Scene(gp.Container((9.0, 9.0)), gravity=(0.0, -1.0)), 10)

@@ -1,4 +1,4 @@
-"""Particles that pass a plane, or an opening: effusion, a closed box, and the area that walls leave."""
+"""Particles that pass a plane, or an opening, and the area that walls leave."""
 
 import numpy as np
 import pytest

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 
 from gaspart import theory
 from gaspart.theory.boltzmann import relaxing_speeds, tagged_paths
@@ -51,18 +52,10 @@ def test_langevin_displacements():
     assert rest[-1] == pytest.approx(12.0 * (50.0 - 3.0), rel=1e-9)
     assert langevin_msd_from_rest(0.02, 2.0, 0.5) == pytest.approx(2.0 * 2.0 * 0.25 * 8e-6, rel=0.01)
     assert (np.diff(rest) > 0.0).all() and (rest[1:] < langevin_msd(t[1:], 2.0, 0.5)).all()
-    fine = np.linspace(
-        0.0, 4.0, 4001
-    )  # dr^2/dt = 2 <r.v>, d<r.v>/dt = <v^2> - g <r.v>, <v^2> = 3 D g (1 - e^-2gt)
+    # dr^2/dt = 2 <r.v>, d<r.v>/dt = <v^2> - g <r.v>, <v^2> = 3 D g (1 - e^-2gt)
+    fine = np.linspace(0.0, 4.0, 4001)
     energy = 3.0 * 2.0 * 0.5 * (1.0 - np.exp(-fine))
-    rv = np.exp(-0.5 * fine) * np.concatenate(
-        [
-            [0.0],
-            np.cumsum(
-                0.5 * np.diff(fine) * ((energy * np.exp(0.5 * fine))[1:] + (energy * np.exp(0.5 * fine))[:-1])
-            ),
-        ]
-    )
+    rv = np.exp(-0.5 * fine) * cumulative_trapezoid(energy * np.exp(0.5 * fine), fine, initial=0.0)
     assert 2.0 * np.trapezoid(rv, fine) == pytest.approx(rest[5], rel=1e-5)
 
 
