@@ -43,18 +43,10 @@ def own_cache(tmp_path, monkeypatch):
 
 
 @pytest.mark.thorough
-def test_the_advised_run_reaches_the_accuracy(tmp_path):
-    made = plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4)
+def test_pilots_are_kept():
+    made, again = (plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4) for _ in range(2))
     assert made.affordable and made.best.error <= 0.05 * (1.0 + 1e-9)
-    path = gp.run(
-        BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
-        until=made.recipe.until.accuracies, at_most=made.recipe.until.at_most, path=tmp_path / "run.nc",
-    )  # fmt: skip
-    (reached,) = gp.reached_accuracy(path)
-    assert reached.met and reached.accuracy <= 0.05
-    assert (
-        plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0
-    )  # kept from before
+    assert again.pilots[0].seconds == 0.0
 
 
 @pytest.mark.parametrize("observable", ["msd", pytest.param("vacf", marks=pytest.mark.thorough)])
@@ -356,20 +348,6 @@ def column(count, height, pull, region=None, **more):
     return gp.Scene(box, [kind], gravity=(0.0, 0.0, -pull), **more)
 
 
-@pytest.mark.thorough
-def test_a_column_with_a_dense_floor():
-    """Collision rate 0.7957(20) of this start or another, which differ by 0.0055 of it."""
-    region = ((0.0, 0.0, 0.0), (14.0, 14.0, 8.0))
-    kind = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, region=region)
-    box = gp.Container((14.0, 14.0, 300.0), ("periodic", "periodic", "wall"))
-    scene = gp.Scene(box, [kind], gravity=(0.0, 0.0, -0.25))
-    made = plan.plan_from_pilots(scene, "collision_rate", 0.1, pilot_seconds=1.0)
-    assert {"dsmc", "dsmc enskog"} == set(made.refused)
-    assert made.best.candidate.engine in [one.engine for one in made.pilots]
-    exact = made.pilots[0].value
-    error = math.hypot(0.002, exact * made.pilots[0].accuracy, made.scatter.value * exact)
-    assert exact == pytest.approx(0.7957, abs=3.0 * error) and error < 0.02
-    assert made.scatter.placed and not made.scatter.drawn
 
 
 def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):

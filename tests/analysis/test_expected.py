@@ -95,29 +95,15 @@ def test_a_mixture_by_the_enskog_equation_is_its_contact_values():
 
 @pytest.mark.thorough
 def test_fluxes_by_the_boltzmann_equation(tmp_path):
-    """The pressure of 64 particles about their centre of mass, and the viscosity of points."""
+    """The pressure of 64 particles about their centre of mass, and the bulk viscosity of cells."""
     scene = gas(3, 64, 0.01, exact_temperature=True)
-    path = gp.run(
-        scene,
-        gp.DSMC(),
-        1,
-        4000.0,
-        20.0,
-        tmp_path / "run.nc",
-        correlations=Correlations(2.0, 10, stress=True),
-    )
+    kept = Correlations(2.0, 10, stress=True)
+    path = gp.run(scene, gp.DSMC(), 1, 4000.0, 20.0, tmp_path / "run.nc", correlations=kept)
     tensor = measure(path, "pressure_tensor")
     kinetic = 63.0 / scene.container.volume
     known = tensor.theory.sel(component=["xx", "yy", "zz"])
     assert np.allclose(known, kinetic, rtol=0.02)
     assert (abs(tensor.estimate - tensor.theory) < 3.5 * tensor.error).all()
-    viscosity = measure(path, "shear_viscosity")
-    unsure = float(viscosity["shear_viscosity_theory_error"])
-    assert abs(float(viscosity.estimate - viscosity.theory)) < 3.0 * math.hypot(
-        float(viscosity.error), unsure
-    )
-    conductivity = measure(path, "thermal_conductivity")
-    assert float(conductivity.theory) < float(gp.theory.enskog_conductivity(1e-9, 3))
     bulk = measure(path, "bulk_viscosity")  # of the cells alone; 0 without them
     assert float(bulk.theory) == pytest.approx(float(bulk.estimate), abs=3.0 * float(bulk.error))
     assert float(bulk.estimate) > 3.0 * float(bulk.error)

@@ -16,6 +16,10 @@ from gaspart.analysis import diffusion
 from gaspart.analysis.motion import autocorrelation, correlate, squared_displacement
 from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
+import numpy as np
+import pytest
+from scenes import gas
+import gaspart as gp
 
 A = gp.analysis
 SPHERES = [gp.Species(200, 0.5, temperature=1.0)]
@@ -344,3 +348,34 @@ def test_too_few_frames_are_refused(tmp_path):
     path = accumulated_run(tmp_path / "run.nc", discs(), sample_interval=1.25)
     with pytest.raises(gp.SceneError, match="frames = 13: an error needs 17 with samples at all lags"):
         A.velocity_autocorrelation(path)
+
+
+# Displacement and diffusion along each axis.
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    return gp.run(gas(3, 256, 0.2), gp.EventDriven(), 4, 60.0, 0.25, folder / "run.nc", displacements=True)
+
+
+def test_displacements_along_axes_sum_to_the_whole(path):
+    whole = gp.analysis.mean_squared_displacement(path, lags=20)
+    found = gp.analysis.mean_squared_displacement(path, lags=20, per_axis=True)
+    assert found.estimate.dims == ("axis", "lag") and list(found["axis"].values) == ["x", "y", "z"]
+    assert np.allclose(found.estimate.sum("axis"), whole.estimate, rtol=1e-10)
+    assert np.allclose(found.theory.sum("axis"), whole.theory)
+    with gp.open_trajectory(path) as data:
+        moved = data["displacements"].values[60:]
+    moved = moved - moved.mean(axis=1, keepdims=True)  # about the centre of mass
+    lag = ((moved[5:] - moved[:-5]) ** 2).mean(axis=(0, 1)) * 256 / 255
+    assert np.allclose(found.estimate.isel(lag=5), lag, rtol=1e-6)
+
+
+def test_diffusion_along_axes_has_the_mean_of_all_and_agrees_with_theory(path):
+    whole = gp.analysis.diffusion_coefficient(path)
+    found = gp.analysis.diffusion_coefficient(path, per_axis=True)
+    assert found.estimate.dims == ("axis",) and found.estimate.size == 3
+    assert float(found.estimate.mean()) == pytest.approx(float(whole.estimate), rel=1e-10)
+    assert (abs(found.deviation) < 4.0).all()
+    assert (found.error > whole.error).all()

@@ -60,11 +60,6 @@ def test_a_run_cut_short_counts_on(path, tmp_path, monkeypatch):
     assert gp.resume(target).read_bytes() == path.read_bytes()
 
 
-def test_a_simulation_is_run_again():
-    simulation = gp.Simulation(mixture(), gp.EventDriven(), seed=1)
-    simulation.advance(duration=20.0)
-    found = gp.analysis.contact_values(simulation)
-    assert np.isfinite(found.estimate).all() and (found.error > 0.0).all()
 
 
 def test_what_cannot_be_counted_is_refused(tmp_path, path):
