@@ -118,8 +118,7 @@ def test_time_steps_err_by_twice_the_contacts_that_they_miss(dimension, missed):
     ("fraction", "width"), [(0.01, 5), pytest.param(0.001, 3, marks=pytest.mark.thorough)]
 )
 def test_points_between_walls_collide_too_often(fraction, width):
-    """A particle of a diameter has fewer neighbours at a wall: in a dilute gas by half a diameter over the
-    width."""
+    """Of neighbours at a wall there are fewer: in a dilute gas by half a diameter over the width."""
     scene = slit(200, fraction, width)
     difference, error = compared(scene, gp.DSMC(), 400)
     bound = boltzmann_error(asked(conditions_of(scene), "collision_rate"))

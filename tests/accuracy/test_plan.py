@@ -348,8 +348,6 @@ def column(count, height, pull, region=None, **more):
     return gp.Scene(box, [kind], gravity=(0.0, 0.0, -pull), **more)
 
 
-
-
 def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):
     """As many as there are engines that may be advised, within the time for all of them."""
     made, whole = [], pilot.run_pilot

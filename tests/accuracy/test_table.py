@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from functools import partial
 
 import accuracy_table
 import numpy as np
@@ -12,20 +13,14 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart.accuracy import table
+from gaspart import theory
+from gaspart.accuracy import table, tabulated
+from gaspart.accuracy.of_engine import Candidate
+from gaspart.accuracy.option import fluid_option
 from gaspart.accuracy.table import price_of
 from gaspart.analysis.observables import observables_with
 from gaspart.cli import main
 from gaspart.reproduction.cost import speed_factor
-import math
-from functools import partial
-import numpy as np
-import pytest
-import gaspart as gp
-from gaspart import theory
-from gaspart.accuracy import tabulated
-from gaspart.accuracy.of_engine import Candidate
-from gaspart.accuracy.option import fluid_option
 from gaspart.scene.facts import Gas
 from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
 from gaspart.theory.discretisation import contact_values

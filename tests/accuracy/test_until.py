@@ -57,8 +57,7 @@ def autoregressive(correlation):
 
 
 def ended(known, accuracy):
-    """(value, interval, samples) when the rule ends a run, None if it does not; known: estimates at each
-    examination."""
+    """(value, interval, samples) when the rule ends a run, or None; known: estimates at each examination."""
     before, length, asked = None, 0, gp.Accuracy("Z", accuracy)
     for row, count in zip(known, COUNTS, strict=True):
         now, samples = Estimate(*row), count - count // 4
@@ -75,8 +74,7 @@ def ended(known, accuracy):
     "correlation", [0.5, *(pytest.param(x, marks=pytest.mark.thorough) for x in (-0.3, 0.0, 0.8))]
 )
 def test_the_interval_at_the_end_covers_the_true_value_in_95_of_100_runs(correlation):
-    """Autoregressive series whose mean is known. The accuracies are such that runs end at many of the
-    examinations."""
+    """Autoregressive series of a known mean. The accuracies are such that runs end at many examinations."""
     series, scale, known = autoregressive(correlation)
     for run in range(3):
         mine = correlated_mean(series[run, COUNTS[3] // 4 : COUNTS[3]]).estimate

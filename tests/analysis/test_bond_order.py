@@ -68,13 +68,6 @@ def test_structure_factor_of_a_crystal_is_its_reciprocal_lattice():
     assert factor[tuple(peaks[0])] == pytest.approx(256.0)
 
 
-def test_structure_factor_of_an_ideal_gas_is_one():
-    lengths = fluid(2)[1]
-    _, _, factor = structure.structure_factor([fluid(2, k)[0] for k in range(20)], lengths, 6.0)
-    assert np.isnan(factor).sum() == 1
-    assert np.nanmean(factor) == pytest.approx(1.0, abs=0.03)
-
-
 @pytest.mark.parametrize("side", [1e-6, 40.0, 1.12e5, 1e7])
 def test_the_unit_of_length_does_not_matter(side):
     places = np.random.default_rng(1).random((16, 2))

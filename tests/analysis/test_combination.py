@@ -37,8 +37,6 @@ def test_the_scatter_agrees_with_the_uncertainty_of_single_runs(paths):
     assert 0.45 < float(found.error) * np.sqrt(12) / single < 1.75
 
 
-
-
 def test_speeds_of_runs_of_other_energies_are_in_joint_bins(tmp_path):
     scene = gas(3, 32, 0.1)
     drawn = replace(scene, species=[replace(scene.species[0], exact_temperature=False)])
@@ -117,8 +115,6 @@ def test_runs_of_one_state_without_a_common_time_are_one_run_too(paths, tmp_path
     ]
     with pytest.raises(gp.SceneError, match=r"2\.nc: seed = '2': .*same run, bit for bit, as .*1\.nc"):
         gp.analysis.replicas("Z", same)
-
-
 
 
 def test_thermal_walls_make_runs_of_one_state_different(tmp_path):

@@ -37,8 +37,7 @@ COLUMN = gp.Scene(
 
 @pytest.mark.parametrize(("pull", "walled"), [(0.0, True), (-1.3, True), (1.3, True), (0.0, False)])
 def test_numbers_follow_exactly_from_the_momentum_of_a_known_density(pull, walled):
-    """Of points in a temperature that rises along the axis; without walls the flux through the face is
-    unknown."""
+    """Of points in a temperature that rises; without walls the flux through the face is unknown."""
     places = np.sort(RISE.uniform(0.0, 4.0, 50))  # of particles, which stay there, with any <m v^2>
     bins, time, width = 8, np.array([0.5, 2.0]), 0.5
     spread = np.linspace(1.0, 2.0, bins)
@@ -121,8 +120,7 @@ def test_counts_and_impulses_agree(column, bins):
 
 
 def test_the_density_at_the_floor_is_the_pressure_on_it(column):
-    """The contact theorem, at which counts need narrow bins: the wall carries all momentum of the lowest
-    particles."""
+    """The contact theorem, for which counts need narrow bins."""
     with open_trajectory(column) as run:
         found = A.profile(run, bins=80, start=150.0)
         part = run.isel(frame=run["time"].values >= 150.0)

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scenes import centred
+from scenes import centred, gas
 from scipy.signal import lfilter
 
 import gaspart as gp
@@ -16,10 +16,6 @@ from gaspart.analysis import diffusion
 from gaspart.analysis.motion import autocorrelation, correlate, squared_displacement
 from gaspart.analysis.run import open_run
 from gaspart.errors import SceneError
-import numpy as np
-import pytest
-from scenes import gas
-import gaspart as gp
 
 A = gp.analysis
 SPHERES = [gp.Species(200, 0.5, temperature=1.0)]
@@ -29,13 +25,6 @@ CUBE = (8.1, 8.1, 8.1)
 
 def run(path, scene, duration=60.0, interval=0.2, seed=1):
     return gp.run(scene, gp.EventDriven(), seed, duration, interval, path / "run.nc", displacements=True)
-
-
-def test_particles_between_walls_on_all_sides_have_none(tmp_path):
-    path = run(tmp_path, gp.Scene(gp.Container(CUBE), SPHERES), 12.0)
-    with pytest.raises(gp.SceneError, match="has no periodic axis"):
-        A.diffusion_coefficient(path)
-    assert float(A.mean_squared_displacement(path).estimate[-1]) > 0.0  # a bounded one
 
 
 @pytest.mark.parametrize(
@@ -186,21 +175,6 @@ def test_theory_of_species_alike_is_that_of_self_diffusion(dimension):
 def test_theory_refuses_three_species():
     with pytest.raises(SceneError, match="that of two species"):
         theory.enskog_mutual_diffusion(0.1, 3, [1.0, 1.0, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("scene", "line"),
-    [
-        (_scene(0.1, _kind(50)), "that of two species"),
-        (_scene(0.1, _kind(20), _kind(20), boundary="wall"), "needs a periodic container"),
-        (_scene(0.1, _kind(20), _kind(20), dimension=2), "no diffusion coefficient"),
-    ],
-)
-def test_refusals(scene, line):
-    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    simulation.advance(duration=20.0)
-    with pytest.raises(SceneError, match=line):
-        gp.analysis.mutual_diffusion(simulation)
 
 
 # Time correlations by Fourier transforms, against the sums over particles and time origins.

@@ -85,17 +85,3 @@ def test_profiles_of_a_pile_have_no_warnings_and_no_rounding(at_rest, of):
     assert len(seen) and (seen == 0.0).all()
     if of == "density":
         assert float(found.estimate.sum()) * 20.0 == pytest.approx(100.0)
-
-
-def test_runs_without_a_collision_are_refused():
-    container = gp.Container((9.0, 9.0), "periodic")
-    alone, resting = gp.Species(1, 0.5, speed=1.0), gp.Species(20, 0.5)
-    for species, complaint in ((alone, "too few moving"), (resting, "none happened in the measured part")):
-        simulation = gp.Simulation(gp.Scene(container, [species]), gp.EventDriven(), seed=1)
-        simulation.advance(duration=3.0)
-        with pytest.raises(gp.SceneError, match=complaint):
-            A.compressibility_factor(simulation)
-    fixed = gp.Simulation(gp.Scene(container, [gp.Species(9, 0.5, fixed=True)]), gp.EventDriven(), seed=1)
-    fixed.advance(duration=3.0)
-    with pytest.raises(gp.SceneError, match="fixed particles do not collide"):
-        A.collision_rate(fixed)

@@ -1,4 +1,4 @@
-"""Pressures and densities in containers whose faces move."""
+"""Areas and densities in containers whose faces move, and profiles beside obstacles."""
 
 from __future__ import annotations
 
@@ -72,12 +72,11 @@ def test_density_is_that_of_the_room_in_front_of_the_piston(pushed):
     assert (abs(crossed / inner.mean() - 1.0) < 0.15).all()
 
 
-# Observables beside fixed particles and interior walls: rates of those that move, and what is refused.
+# Observables beside fixed particles.
 
 
 PERIODIC = gp.Container((6.0, 6.0), "periodic")
 OBSTACLES_GAS = gp.Species(20, 0.15, temperature=1.0)
-WALLS = [gp.Wall((1.0, 1.0), (1.0, 5.0))]
 POSTS = [gp.Particle((x, y), (0.0, 0.0), 0.8, fixed=True) for x in (1.5, 4.5) for y in (1.5, 4.5)]
 
 
@@ -90,26 +89,6 @@ def test_a_file_that_does_not_count_collisions_with_fixed_particles_apart_is_ref
         lacking = data.drop_vars("fixed_collisions").load()
     with pytest.raises(gp.SceneError, match="are not counted apart; make the run again"):
         gp.analysis.collision_rate(lacking)
-
-
-@pytest.mark.interpreted
-@pytest.mark.parametrize("keys", [{"particles": POSTS}, {"walls": WALLS}], ids=["fixed", "walls"])
-@pytest.mark.parametrize("name", ["Z", "rdf", "structure_factor", "order", "chemical_potential"])
-def test_what_a_homogeneous_gas_has_is_refused_beside_obstacles(name, keys):
-    scene = gp.Scene(PERIODIC, [OBSTACLES_GAS], **keys)
-    sim = gp.Simulation(scene, gp.EventDriven(), 1)
-    sim.advance(duration=2.0)
-    with pytest.raises(gp.SceneError, match="pressure|homogeneous|smooth and elastic particles alone"):
-        gp.measure(sim, name)
-
-
-@pytest.mark.interpreted
-def test_contact_values_are_refused_beside_interior_walls(tmp_path):
-    scene = gp.Scene(PERIODIC, [OBSTACLES_GAS], walls=WALLS)
-    path = gp.run(scene, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "a.nc", pairs=True)
-    with pytest.raises(gp.SceneError, match="walls = 1: make places unlike"):
-        gp.analysis.contact_values(path)
-    assert (gp.analysis.pair_collision_rates(path).estimate > 0.0).all()
 
 
 # Profiles in scenes with obstacles: uniform where centres can be, as in an ideal gas.

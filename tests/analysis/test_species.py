@@ -64,8 +64,7 @@ def test_temperatures_and_speeds_agree_with_equipartition(path, table):
 
 
 def test_a_condition_of_momentum_is_allowed_for(tmp_path):
-    """Of two particles of masses 1 and 9 the light one has 0.9 of the energy at any time, at equal
-    temperatures."""
+    """Of two particles of masses 1 and 9 the light one has 0.9 of the energy, at equal temperatures."""
     kinds = [gp.Species(1, 0.5, mass=1.0, temperature=1.0), gp.Species(1, 0.5, mass=9.0, temperature=1.0)]
     scene = gp.Scene(gp.Container((6.0, 6.0, 6.0), "periodic"), kinds)
     path = gp.run(scene, gp.EventDriven(), 1, 200.0, 0.25, tmp_path / "two.nc")

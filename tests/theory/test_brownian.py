@@ -28,8 +28,7 @@ def test_friction_of_a_heavy_particle_is_the_drag_of_free_molecular_flow():
 
 
 def test_collisions_carry_the_friction():
-    """Random kicks: <(V(0)/V^2).dV> per collision of a heavy particle, drawn from a Maxwellian flux, give
-    g."""
+    """By <(V(0)/V^2).dV> of random kicks of a heavy particle, drawn from a Maxwellian flux."""
     rng = np.random.default_rng(1)
     particle, drift = 50.0, 0.02
     gas = rng.standard_normal((400_000, 3))
@@ -71,8 +70,7 @@ def hits(rate, mass):
 
 
 def test_a_light_sphere_in_maxwells_gas_has_equipartition_and_sonines_diffusion():
-    """D is 1.01895 k_B T / (M g), from an autocorrelation that decays at the rate g at first, later more
-    slowly."""
+    """D is 1.01895 k_B T / (M g): the autocorrelation decays at the rate g at first, later more slowly."""
     count, interval = 6000, 0.25
     found = tagged_paths([MAXWELL] * 96, interval, hits(1.0, 1.0), 1.0, count, seed=1)
     v, x = found.velocities[32:], found.displacements[32:]

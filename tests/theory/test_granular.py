@@ -116,8 +116,7 @@ def test_the_cumulant_of_few_maxwellian_particles_is_not_zero(count, dimension):
 
 @pytest.mark.parametrize(("count", "dimension"), [(3, 2), (4, 3), (20, 2)])
 def test_few_particles_of_one_energy_lose_more_or_less_of_it(count, dimension):
-    """By the mean square of the approach speed at contacts, of velocities uniform on their sphere: 4 T of
-    Maxwellian ones."""
+    """By the mean square of the approach speed at contacts: 4 T of Maxwellian velocities."""
     velocities = np.random.default_rng(8).standard_normal((400_000, count, dimension))
     velocities -= velocities.mean(axis=1, keepdims=True)
     velocities *= np.sqrt(count * dimension / (velocities**2).sum(axis=(1, 2)))[:, None, None]

@@ -3,11 +3,13 @@ import pytest
 from scipy.integrate import quad
 
 from gaspart import theory
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, initial_kurtosis_slope, kurtosis_scatter
-import numpy as np
-import pytest
-from gaspart import theory
-from gaspart.theory.speeds import RELAXATION_UNCERTAINTY, entropy_deficit, equal_speeds
+from gaspart.theory.speeds import (
+    RELAXATION_UNCERTAINTY,
+    entropy_deficit,
+    equal_speeds,
+    initial_kurtosis_slope,
+    kurtosis_scatter,
+)
 
 UNITS = {"temperature": 2.5, "mass": 0.7}
 

@@ -60,8 +60,6 @@ def test_a_run_cut_short_counts_on(path, tmp_path, monkeypatch):
     assert gp.resume(target).read_bytes() == path.read_bytes()
 
 
-
-
 def test_what_cannot_be_counted_is_refused(tmp_path, path):
     target = tmp_path / "run.nc"
     with pytest.raises(gp.SceneError, match='^pairs = True: .*"event" engine'):

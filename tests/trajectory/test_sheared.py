@@ -73,5 +73,3 @@ def test_its_file_passes_the_checks_and_is_drawn(path, tmp_path, capsys):
     assert gp.render(path, size=(120, 100)).shape[:2] == (100, 120)
     gp.film(path, tmp_path / "film.gif", size=(120, 100), clock=False, trail=3)
     gp.view(path, frames=4).save(tmp_path / "view.html")
-
-
