@@ -2,8 +2,6 @@
 at no more than 1.5 times the cost of the best setting that a search finds.
 """
 
-from __future__ import annotations
-
 import math
 import time
 

@@ -1,7 +1,5 @@
 """The table as it is kept: what must hold of any measurement."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

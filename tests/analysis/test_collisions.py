@@ -1,7 +1,5 @@
 """The data set of collisions: rows that follow from one another, and what kinetic theory says of them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from time import sleep
 

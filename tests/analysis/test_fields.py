@@ -1,7 +1,5 @@
 """Fields in cells: density, flow and temperature."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Temperatures of gases that flow: about the flow, by every function that states one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Densities from impulses: exactly from exact momenta, mixed with counts, and as those of runs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The diffusion coefficient: where there is one, and where there is none."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

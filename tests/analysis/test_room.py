@@ -1,7 +1,5 @@
 """Areas and densities in containers whose faces move, and profiles beside obstacles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The table of all observables of each species."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

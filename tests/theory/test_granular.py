@@ -1,7 +1,5 @@
 """Rough and inelastic gases against averages over Maxwellian pairs of the contact law itself."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
