@@ -66,16 +66,8 @@ def test_the_heat_flux_is_not_the_pressure(tmp_path):
 )
 def test_runs_end_when_they_are_accurate(tmp_path, scene, observable, accuracy):
     asked = gp.Accuracy(observable, accuracy)
-    path = gp.run(
-        scene,
-        gp.EventDriven(),
-        1,
-        sample_interval=1.0,
-        path=tmp_path / "run.nc",
-        until=asked,
-        at_most=4000.0,
-        pairs=True,
-    )
+    settings = {"sample_interval": 1.0, "at_most": 4000.0, "pairs": True}
+    path = gp.run(scene, gp.EventDriven(), 1, path=tmp_path / "run.nc", until=asked, **settings)
     (reached,) = gp.reached_accuracy(path)
     assert reached.met and reached.accuracy <= accuracy
 

@@ -94,7 +94,6 @@ def searched(gas, observable, accuracy, unit, rate):
     return best
 
 
-@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:gaspart. time_step")
 def test_the_advised_accuracy_is_reached():
     missed, expensive = [], []
@@ -102,15 +101,9 @@ def test_the_advised_accuracy_is_reached():
         gas, observable, accuracy = scene(number)
         found = plan_from_table(gas, observable, accuracy)
         rate = float(theory.collision_rate(**found.gas.parameters))
+        duration = found.collisions_per_particle / rate
         values = [
-            run(
-                gas,
-                found.best.engine,
-                observable,
-                found.collisions_per_particle / rate,
-                2.0 * EQUILIBRATION / rate,
-                (number, k),
-            )
+            run(gas, found.best.engine, observable, duration, 2.0 * EQUILIBRATION / rate, (number, k))
             for k in range(found.replicas)
         ]
         error = np.mean([value for value, _ in values]) / truth(gas, observable) - 1.0
@@ -140,14 +133,12 @@ def test_scenes_that_are_not_even(tmp_path):
     assert sum(one["reached"] for one in found) >= 3
 
 
-@pytest.mark.thorough
 def test_a_hundred_scenes_that_are_not_even(tmp_path):
     made = [one for one in results(tmp_path / "results", range(100), uneven.scene) if "reached" in one]
     assert len(made) >= 95
     assert np.mean([one["reached"] for one in made]) >= LEAST_REACHED
 
 
-@pytest.mark.thorough
 def test_a_hundred_random_scenes(tmp_path):
     made = [one for one in results(tmp_path / "results", range(100)) if "reached" in one]
     assert len(made) == 100

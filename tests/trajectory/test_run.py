@@ -270,15 +270,8 @@ def test_a_broken_invariant_stops_the_run_and_keeps_its_state(tmp_path, monkeypa
 def test_progress_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(recording, "_PROGRESS", 0.0)
     reported = []
-    gp.run(
-        gas(2, 10, 0.1),
-        gp.EventDriven(),
-        1,
-        2.0,
-        0.5,
-        tmp_path / "run.nc",
-        progress=lambda *x: reported.append(x),
-    )
+    settings = {"path": tmp_path / "run.nc", "progress": lambda *x: reported.append(x)}
+    gp.run(gas(2, 10, 0.1), gp.EventDriven(), 1, 2.0, 0.5, **settings)
     times, durations, collisions = zip(*reported, strict=True)
     assert times[-1] == 2.0 and set(durations) == {2.0}
     assert list(times) == sorted(times) and list(collisions) == sorted(collisions) and collisions[-1] > 0
@@ -291,15 +284,8 @@ def test_a_damaged_checkpoint_costs_the_work_and_nothing_else(tmp_path):
     written = checkpoint_path(kept).read_bytes()
     checkpoint_path(kept).unlink()
     kept.unlink()
-    for spoilt in (
-        b"",
-        written[:4],
-        written[:20],
-        written[:200],
-        written[:-1],
-        written[200:],
-        bytes(200) + written,
-    ):
+    parts = written[:4], written[:20], written[:200], written[:-1], written[200:]
+    for spoilt in (b"", *parts, bytes(200) + written):
         path.rename(partial_path(path))
         checkpoint_path(path).write_bytes(spoilt)
         assert gp.resume(path).read_bytes() == complete
