@@ -1,4 +1,6 @@
-"""Particles that pass a plane, or an opening, and the area that walls leave."""
+"""Particles that pass a plane, or an opening: effusion, and the area that walls leave."""
+
+import math
 
 import numpy as np
 import pytest
@@ -7,6 +9,8 @@ import gaspart as gp
 from gaspart.analysis.expected.flows import opening
 from gaspart.analysis.measuring import measure
 from gaspart.errors import SceneError
+
+A = gp.analysis
 
 
 def chamber(count=4000, radius=1e-4, region=((0.0, 0.0), (20.0, 20.0)), **more):
@@ -22,6 +26,33 @@ def streamed():
     simulation = gp.Simulation(chamber(), gp.EventDriven(), seed=1)
     simulation.advance(duration=4.0)
     return simulation
+
+
+@pytest.mark.thorough
+def test_effusion(streamed):
+    """n sqrt(k_B T / 2 pi m) w = 10 sqrt(2 / pi) 2 = 15.96 per time, of which the net number is exact."""
+    found = A.particle_flux(streamed, "x", start=0.0)
+    assert found.estimate.dims == ("component",) and found["component"].values.tolist() == ["x"]
+    theory = 10.0 * math.sqrt(2.0 / math.pi) * 2.0
+    assert float(found.theory[0]) == pytest.approx(theory, rel=0.02)
+    assert abs(float(found.deviation[0])) < 3.0
+    assert float(found.error[0]) < 0.2 * theory
+    last = streamed.state.positions[:, 0] > 20.0
+    assert float(found.estimate[0]) == pytest.approx(last.sum() / 4.0)
+
+
+@pytest.mark.thorough
+def test_the_flux_of_a_mirrored_or_turned_gas(streamed):
+    """Its sign follows the axis, as its name does."""
+    with_x = A.particle_flux(streamed, "x", start=0.0)
+    mirrored = chamber(region=((20.0, 0.0), (40.0, 20.0)))
+    simulation = gp.Simulation(mirrored, gp.EventDriven(), seed=1)
+    simulation.advance(duration=4.0)
+    back = A.particle_flux(simulation, "x", start=0.0)
+    assert float(back.theory[0]) == pytest.approx(-float(with_x.theory[0]), rel=0.02)
+    assert abs(float(back.deviation[0])) < 3.0 and float(back.estimate[0]) < 0.0
+    elsewhere = A.particle_flux(streamed, "x", at=10.0, start=0.0)
+    assert elsewhere.theory is None or float(elsewhere.theory[0]) != float(with_x.theory[0])
 
 
 def test_a_piston_that_compresses_moves_particles_through_a_plane_at_rest(tmp_path):
