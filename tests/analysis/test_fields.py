@@ -21,6 +21,15 @@ def sheared(tmp_path_factory):
     return gp.run(scene, gp.EventDriven(), 1, 4000.0, 4.0, path)
 
 
+@pytest.mark.thorough
+def test_flow_follows_the_plates(sheared):
+    found = gp.analysis.field(sheared, "velocity", "y", cells=5)
+    along, across = found.estimate.sel(component="x"), found.estimate.sel(component="y")
+    assert (np.diff(along) > 0.0).all()
+    assert abs(float(along[2])) < 3.0 * float(found.error.sel(component="x")[2])
+    assert (abs(across) < 4.0 * found.error.sel(component="y")).all()
+
+
 def test_temperature_is_about_the_flow(sheared):
     """Against a direct sum over the frames, and between those of the plates."""
     found = gp.analysis.field(sheared, "temperature", "y", cells=4, start=0.0)
