@@ -61,11 +61,6 @@ def test_bias_and_noise_make_up_the_wanted_accuracy(dimension, observable, accur
     assert all(best.seconds <= slower * other.seconds for other in found.options[1:])
 
 
-def test_a_ten_thousandth_takes_the_exact_engine():
-    assert advice(0.01, 1e-4).best.engine.name == "event"
-    assert advice(0.3, 1e-4).best.engine.name == "event"
-
-
 def test_a_fast_time_stepped_engine_is_taken(fast_steps):
     found = advice(0.3, 1e-2)
     assert found.best.engine.name == "step" and found.best.bias < 1e-2
@@ -99,18 +94,6 @@ def test_long_steps_of_dsmc_are_explained():
         (line,) = [line for line in lines if line.startswith("time step")]
         assert "times the engine's own" in line and effect in line
     assert not [line for line in _lines(advice(0.3, 0.01), "gas.yaml") if line.startswith("time step")]
-
-
-def test_dilute_discs_take_the_model_that_is_accurate_enough():
-    """Of discs the contact value is 1 + 1.56 of the packing fraction; Z of Boltzmann's equation is 1."""
-    rough, fine = (advice(0.01, accuracy, "collision_rate", dimension=2) for accuracy in (0.1, 0.005))
-    assert timed_as(rough.best.engine) == "dsmc" and timed_as(fine.best.engine) == "event"
-    assert rough.best.bias == pytest.approx(1.0 - 1.0 / float(theory.contact_value(0.01, 2)))
-    assert rough.best.bias == pytest.approx(1.564 * 0.01, rel=0.02)
-    by_name = {timed_as(one.engine): one for one in rough.options[1:]}
-    assert by_name["event"].seconds > 4.0 * rough.best.seconds
-    assert timed_as(advice(0.01, 0.1, dimension=2).best.engine) == "event"
-    assert timed_as(advice(0.1, 0.1, "collision_rate", dimension=2).best.engine) == "event"
 
 
 @pytest.mark.parametrize(

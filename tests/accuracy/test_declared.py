@@ -101,18 +101,3 @@ def test_mutual_diffusion_has_the_model_error_of_diffusion():
         models[name] = {timed_as(one.engine): (one.model, one.discretisation) for one in made}
     assert models["D"] == models["mutual_diffusion"]
     assert models["D"]["dsmc enskog"][0] == pytest.approx(0.066, abs=0.003)
-
-
-def test_no_advice_is_to_measure_what_a_model_states():
-    """Z of a dilute mixture by the Boltzmann model, of which a run says nothing."""
-    kinds = [gp.Species(500, 0.5, temperature=1.0, mass=mass) for mass in (1.0, 2.0)]
-    scene = gp.Scene(gp.Container((60.0,) * 3, "periodic"), kinds)
-    even = even_conditions(scene, 1.0)
-    made, refused = candidates(Target.from_name(scene, "Z"), 0.1, even)
-    assert (
-        "dsmc" not in {timed_as(one.engine) for one in made}
-        and "is 1 of particles without extent" in refused["dsmc"]
-    )
-    assert "dsmc" in {
-        timed_as(one.engine) for one in candidates(Target.from_name(scene, "collision_rate"), 0.1, even)[0]
-    }

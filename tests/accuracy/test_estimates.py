@@ -50,12 +50,6 @@ def test_a_series_that_controls_explain_to_rounding_has_a_known_error():
     assert (unchanged.error(60.0), unchanged.freedom) == (0.0, 1.0)
 
 
-def test_without_the_store_a_short_series_predicts_too_much():
-    series, _ = planted(0.0, 12.0, 384, 1)
-    found = [with_stores(one, np.zeros((385, 0)), 1.0).error(384.0 * LONG) for one in series]
-    assert np.median(found) > 2.0 * math.sqrt(1.0 / (384.0 * LONG))
-
-
 WALLED = gas(2, 64, 0.04, boundary="wall", exact_temperature=True)
 
 

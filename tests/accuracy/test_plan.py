@@ -43,18 +43,10 @@ def own_cache(tmp_path, monkeypatch):
 
 
 @pytest.mark.thorough
-def test_the_advised_run_reaches_the_accuracy(tmp_path):
-    made = plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4)
+def test_pilots_are_kept():
+    made, again = (plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4) for _ in range(2))
     assert made.affordable and made.best.error <= 0.05 * (1.0 + 1e-9)
-    path = gp.run(
-        BOX, made.recipe.engine, 3, sample_interval=made.recipe.sample_interval,
-        until=made.recipe.until.accuracies, at_most=made.recipe.until.at_most, path=tmp_path / "run.nc",
-    )  # fmt: skip
-    (reached,) = gp.reached_accuracy(path)
-    assert reached.met and reached.accuracy <= 0.05
-    assert (
-        plan.plan_from_pilots(BOX, "pressure", 0.05, pilot_seconds=0.4).pilots[0].seconds == 0.0
-    )  # kept from before
+    assert again.pilots[0].seconds == 0.0
 
 
 @pytest.mark.parametrize("observable", ["msd", pytest.param("vacf", marks=pytest.mark.thorough)])
@@ -321,18 +313,11 @@ def test_what_is_stored_falls_faster_than_noise():
         (gp.Scene(BOX.container, [gp.Species(40, 0.5)]), "pressure", "moving particles"),
         (gp.Scene(BOX.container), "pressure", "count = 0"),
         (BOX, "Z", "observable = 'Z': container.boundary"),
-        (
-            BOX,
-            "shear_viscosity",
-            "container.boundary: the stress, viscosity and conductivity need a periodic",
-        ),
-        (SHEARED, "pressure", "observable = 'pressure': container.boundary: has no walls"),
         (BOX, "pressure:z low", "must be one of the walls, x low, x high, y low, y high"),
         (BOX, "collision_rate:x low", "collision_rate is not of a wall"),
         (SHEARED, "vacf", "not defined where images of the particles slide"),
         (replace(SHEARED, restitution=None), "shear_viscosity", "nothing takes the energy"),
         (replace(BOX, faces={"y_low": gp.Vibrating(0.1, 1.0)}), "pressure", "nothing takes the energy"),
-        (replace(BOX, thermostat=gp.Thermostat(1.0, 0.1)), "pressure", "nothing takes the energy"),
         (BOX, "Q", "observable = 'Q': unknown observable"),
     ],
 )
@@ -361,29 +346,6 @@ def column(count, height, pull, region=None, **more):
     kind = gp.Species(count, 0.5, temperature=1.0, exact_temperature=True, region=region)
     box = gp.Container((6.0, 6.0, height), ("periodic", "periodic", "wall"))
     return gp.Scene(box, [kind], gravity=(0.0, 0.0, -pull), **more)
-
-
-@pytest.mark.thorough
-def test_a_column_with_a_dense_floor():
-    """Collision rate 0.7957(20) of this start or another, which differ by 0.0055 of it."""
-    region = ((0.0, 0.0, 0.0), (14.0, 14.0, 8.0))
-    kind = gp.Species(200, 0.5, temperature=1.0, exact_temperature=True, region=region)
-    box = gp.Container((14.0, 14.0, 300.0), ("periodic", "periodic", "wall"))
-    scene = gp.Scene(box, [kind], gravity=(0.0, 0.0, -0.25))
-    made = plan.plan_from_pilots(scene, "collision_rate", 0.1, pilot_seconds=1.0)
-    assert {"dsmc", "dsmc enskog"} == set(made.refused)
-    assert made.best.candidate.engine in [one.engine for one in made.pilots]
-    exact = made.pilots[0].value
-    error = math.hypot(0.002, exact * made.pilots[0].accuracy, made.scatter.value * exact)
-    assert exact == pytest.approx(0.7957, abs=3.0 * error) and error < 0.02
-    assert made.scatter.placed and not made.scatter.drawn
-
-
-@pytest.mark.thorough
-def test_what_is_advised_has_a_pilot():
-    for scene, observable in ((BOX, "pressure"), (DILUTE, "collision_rate"), (bed(0.3), "temperature")):
-        made = plan.plan_from_pilots(scene, observable, 0.2, pilot_seconds=0.4)
-        assert made.best.candidate.engine in [one.engine for one in made.pilots]
 
 
 def test_a_plain_gas_between_walls_has_one_pilot_or_two(monkeypatch):

@@ -1,10 +1,9 @@
 """The table as it is kept: what must hold of any measurement."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
+from functools import partial
 
 import accuracy_table
 import numpy as np
@@ -12,11 +11,17 @@ import pytest
 import xarray as xr
 
 import gaspart as gp
-from gaspart.accuracy import table
+from gaspart import theory
+from gaspart.accuracy import table, tabulated
+from gaspart.accuracy.of_engine import Candidate
+from gaspart.accuracy.option import fluid_option
 from gaspart.accuracy.table import price_of
 from gaspart.analysis.observables import observables_with
 from gaspart.cli import main
 from gaspart.reproduction.cost import speed_factor
+from gaspart.scene.facts import Gas
+from gaspart.theory.diffusion import ERPENBECK_WOOD_UNCERTAINTY
+from gaspart.theory.discretisation import contact_values
 
 
 def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
@@ -30,28 +35,10 @@ def test_every_row_is_a_number_with_an_error_of_a_known_quantity():
     assert {row["dimension"] for row in table.read()} == {2, 3}
 
 
-def test_longer_steps_lose_more_contacts():
-    steps = [0.04, 0.08, 0.16, 0.32]
-    for fraction in (0.01, 0.03, 0.1):
-        lost = [table.bias(3, fraction, "float64", step, "collision_rate") for step in steps]
-        assert lost == sorted(lost)
-        assert lost[-1] > 2.0 / 3.0 * 0.9 * 0.32**2
-
-
 def test_unmeasured_time_steps_have_no_bound():
     assert math.isinf(table.bias(3, 0.45, "float64", 0.08, "Z"))
     assert math.isinf(table.bias(3, 0.1, "float64", 0.123, "Z"))
     assert math.isinf(table.seconds(3, 0.45, "step", "float64", 0.08))
-
-
-@pytest.mark.parametrize(
-    ("dimension", "fractions"), [(3, (0.01, 0.1, 0.3, 0.45)), (2, (0.01, 0.1, 0.3, 0.6))]
-)
-def test_a_contact_costs_less_in_a_denser_gas(dimension, fractions):
-    """The flights between contacts are shorter, and neighbour lists know where to look."""
-    times = [table.seconds(dimension, fraction, "event") for fraction in fractions]
-    assert times == sorted(times, reverse=True)
-    assert times[-1] < 0.8 * times[-2]
 
 
 @pytest.mark.parametrize("eta", [1e-4, 0.001, 0.01])
@@ -201,3 +188,44 @@ def test_the_table_holds_what_was_measured(folder, capsys):
     # collisions
     assert float(found["event", "0", "noise_Z", "2"]["value"]) == pytest.approx(25.0)
     assert float(found["event", "0", "noise_D", "3"]["value"]) == pytest.approx(1e-4 * 50 * 4 * 40, rel=1e-3)
+
+
+# Costs of a fluid, and errors of the models of DSMC that theory states.
+
+
+def test_the_costs_of_a_fluid_are_those_of_its_contacts():
+    """A contact of 2 us, and 1 / 100 of the variance of one contact."""
+    gas, candidate = Gas(3, 0.1, 1000, 1.0, 1.0), Candidate(gp.EventDriven())
+    option = fluid_option(gas, candidate, 2e-6, 0.01, 1.0, discarded=0.0)
+    assert option.cost(1e-3) == pytest.approx(2e-6 * (0.01 / 1e-3**2 + 0.5 * 1000 * 30.0))
+    assert option.cost(1.0) == pytest.approx(2e-6 * 0.5 * 1000 * (30.0 + 20.0))
+
+
+@pytest.mark.parametrize(("dimension", "order"), [(2, 1.564), (3, 2.5)])
+def test_the_boltzmann_equation_lacks_contact_value_and_virial(dimension, order):
+    """order: of the contact value, 1 + order x packing fraction."""
+    z, contact = (float(f(0.1, dimension)) for f in (theory.compressibility_factor, theory.contact_value))
+    error = partial(tabulated.model_error, dimension=dimension, equation="boltzmann")
+    assert error(0.1, observable="Z") == pytest.approx(1.0 - 1.0 / z)
+    assert error(0.1, observable="collision_rate") == pytest.approx(1.0 - 1.0 / contact)
+    assert error(1e-3, observable="collision_rate") == pytest.approx(1e-3 * order, rel=0.005)
+    for name in ("Z", "collision_rate"):  # a dilute gas has neither
+        assert error(1e-6, observable=name) < 1e-5
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_enskog_model_errs_by_the_contact_value_that_its_engine_has(dimension):
+    radius, density = np.array([0.5]), np.array([0.3 / theory.particle_volume(dimension)])
+    given = contact_values(density, radius, dimension).item()
+    error = abs(given / float(theory.contact_value(0.3, dimension)) - 1.0)
+    found = tabulated.model_error(0.3, dimension, "enskog", "collision_rate")
+    assert 0.0 < found < 0.004 and found == pytest.approx(error, rel=1e-9)
+    assert 0.0 < tabulated.model_error(0.3, dimension, "enskog", "Z") < found
+
+
+def test_both_models_lack_the_memory_of_collisions_in_d():
+    ratio = float(theory.erpenbeck_wood_ratio(0.3))
+    exact = 1.0 - 1.0 / ratio + ERPENBECK_WOOD_UNCERTAINTY
+    assert tabulated.model_error(0.3, 3, "enskog", "D") == pytest.approx(exact, rel=0.02)
+    assert tabulated.model_error(1e-6, 3, "boltzmann", "D") < 1e-5
+    assert tabulated.model_error(0.01, 2, "boltzmann", "D") == math.inf  # discs have no D

@@ -1,12 +1,9 @@
-import sys
-
 import numpy as np
 import pytest
 from scenes import gas
 from scipy.spatial import Delaunay
 
 from gaspart.analysis import bond_order as structure
-from gaspart.errors import SceneError
 from gaspart.state.initial import initial_state
 
 HEXAGONAL = np.array([16.0, 8.0 * np.sqrt(3.0)])
@@ -31,11 +28,6 @@ def test_hexatic_order_of_a_crystal_and_its_direction():
     assert abs(np.angle(turned.mean())) == pytest.approx(
         np.pi, abs=1e-4
     )  # rows along y: turned by 30 degrees
-
-
-def test_hexatic_order_of_a_fluid_is_that_of_random_phases():
-    positions, lengths = fluid(2)
-    assert abs(structure.hexatic(positions, lengths).mean()) < 0.1
 
 
 def voronoi_order(positions, lengths):
@@ -74,20 +66,6 @@ def test_structure_factor_of_a_crystal_is_its_reciprocal_lattice():
     row, half = round(2 / np.sqrt(3.0), 3), round(1 / np.sqrt(3.0), 3)
     assert found == {(0, row), (0, -row), (1, half), (1, -half), (-1, half), (-1, -half)}
     assert factor[tuple(peaks[0])] == pytest.approx(256.0)
-
-
-def test_structure_factor_of_an_ideal_gas_is_one():
-    lengths = fluid(2)[1]
-    _, _, factor = structure.structure_factor([fluid(2, k)[0] for k in range(20)], lengths, 6.0)
-    assert np.isnan(factor).sum() == 1
-    assert np.nanmean(factor) == pytest.approx(1.0, abs=0.03)
-
-
-def test_without_freud_the_message_names_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "freud", None)
-    structure._freud.cache_clear()
-    with pytest.raises(SceneError, match=r"bond order .*: pip install 'gaspart\[order\]'"):
-        structure.hexatic(triangular(), HEXAGONAL)
 
 
 @pytest.mark.parametrize("side", [1e-6, 40.0, 1.12e5, 1e7])

@@ -37,19 +37,6 @@ def test_the_scatter_agrees_with_the_uncertainty_of_single_runs(paths):
     assert 0.45 < float(found.error) * np.sqrt(12) / single < 1.75
 
 
-def test_curves_have_their_places_and_may_be_of_simulations_and_open_files(paths):
-    found = gp.analysis.replicas("rdf", paths[:3])
-    assert found["rdf_replicas"].dims == ("replica", "distance")
-    assert np.allclose(found["rdf_replicas"].mean("replica"), found.estimate)
-    with gp.open_trajectory(paths[0]) as first, gp.open_trajectory(paths[1]) as second:
-        two = gp.analysis.replicas("rdf", [first, second])
-    assert np.array_equal(two["rdf_replicas"], found["rdf_replicas"][:2])
-    simulations = [gp.Simulation(GAS, gp.EventDriven(), seed) for seed in (1, 2)]
-    for sim in simulations:
-        sim.advance(duration=5.0)
-    assert gp.analysis.replicas("collision_rate", simulations).attrs["freedom"] == 1
-
-
 def test_speeds_of_runs_of_other_energies_are_in_joint_bins(tmp_path):
     scene = gas(3, 32, 0.1)
     drawn = replace(scene, species=[replace(scene.species[0], exact_temperature=False)])
@@ -128,15 +115,6 @@ def test_runs_of_one_state_without_a_common_time_are_one_run_too(paths, tmp_path
     ]
     with pytest.raises(gp.SceneError, match=r"2\.nc: seed = '2': .*same run, bit for bit, as .*1\.nc"):
         gp.analysis.replicas("Z", same)
-
-
-def test_runs_of_different_states_may_have_one_seed(paths, tmp_path):
-    starts = [gp.last_state(path) for path in paths[:2]]
-    runs = [
-        gp.run(GAS, gp.EventDriven(), 1, 8.0, 0.25, tmp_path / f"{n}.nc", initial=start)
-        for n, start in enumerate(starts)
-    ]
-    assert gp.analysis.replicas("Z", runs).attrs["freedom"] == 1
 
 
 def test_thermal_walls_make_runs_of_one_state_different(tmp_path):

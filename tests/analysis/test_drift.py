@@ -90,15 +90,6 @@ def test_an_open_scene_that_still_fills_is_said_to_drift(tmp_path, capsys):
         assert "(not steady: the number of particles drifts from" in capsys.readouterr().out
 
 
-def test_a_gas_that_cools_drifts_and_one_in_equilibrium_does_not(tmp_path, capsys):
-    for restitution, drifts in ((gp.Restitution(normal=0.9), True), (None, False)):
-        kind = gp.Species(100, 0.5, temperature=1.0)
-        scene = gp.Scene(gp.Container((20.0, 20.0)), [kind], restitution=restitution)
-        path = gp.run(scene, gp.EventDriven(), 1, 100.0, 0.5, tmp_path / f"{drifts}.nc")
-        assert main(["measure", str(path), "density", "temperature"]) == 0
-        assert ("the kinetic energy of a particle drifts" in capsys.readouterr().out) == drifts
-
-
 def test_the_first_gas_of_the_readme_is_steady(tmp_path):
     scene = gp.Scene(gp.Container((48.0, 36.0)), [gp.Species(300, 0.5, speed=1.0)])
     runs = [gp.run(scene, seed=seed, duration=40.0, sample_interval=0.4, path=tmp_path / f"{seed}.nc")

@@ -1,7 +1,5 @@
 """Temperatures of gases that flow: about the flow, by every function that states one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -15,10 +13,7 @@ A = gp.analysis
 def couette(tmp_path_factory):
     """Discs between plates that slide at -1.5 and 1.5: about the flow 1.11 at the plates, 1.29 in the middle,
     with it 1.29 to 1.99."""
-    faces = {
-        "x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)),
-        "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5)),
-    }
+    faces = {"x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5))}
     container = gp.Container((20.0, 20.0), ("wall", "periodic"))
     scene = gp.Scene(container, [gp.Species(200, 0.5, temperature=1.0)], faces=faces)
     path = tmp_path_factory.mktemp("couette") / "run.nc"
@@ -46,15 +41,6 @@ def test_along_the_flow_it_is_the_mean_across_the_gap(couette):
     assert float(table["temperature_error"][0]) < 0.02
 
 
-def test_speeds_are_those_about_the_flow(couette):
-    found = A.speed_distribution(couette)
-    assert found.theory is None and "about the local flow" in found.estimate.attrs["long_name"]
-    speed, width = found["speed"], float(found["speed"][1] - found["speed"][0])
-    square = float((found.estimate * speed**2).sum() * width)
-    with open_run(couette, None) as run:
-        assert square == pytest.approx(2.0 * run.temperature, rel=0.01)
-
-
 @pytest.mark.thorough
 def test_behind_a_shock_it_is_about_the_flow_of_the_moment(tmp_path):
     """A wall at speed 2 drives a shock at 4.59; 2.78 behind it, by the jump conditions. With the flow 4.1."""
@@ -70,19 +56,6 @@ def test_behind_a_shock_it_is_about_the_flow_of_the_moment(tmp_path):
     assert float(found.estimate[ahead].mean()) == pytest.approx(1.0, rel=0.08)
     assert float(density.estimate[behind].mean()) == pytest.approx(0.342, rel=0.06)
     assert np.isnan(density.estimate[found["position"] < 17.0]).all()
-
-
-@pytest.mark.parametrize("drift", [pytest.param(0.0, marks=pytest.mark.thorough), 1.0])
-def test_in_a_wind_it_is_about_the_wind(tmp_path, drift):
-    """Both walls slide with the gas, or rest with it: the same state in another frame."""
-    velocity = (0.0, drift) if drift else None
-    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(1.0, velocity=velocity))
-    container = gp.Container((16.0, 16.0), ("wall", "periodic"))
-    scene = gp.Scene(container, [gp.Species(80, 0.5, temperature=1.0)], faces=faces)
-    path = gp.run(scene, gp.EventDriven(), 1, 400.0, 0.5, tmp_path / "wind.nc")
-    found = A.profile(path, "temperature", "y", bins=4)
-    assert (abs(found.estimate - 1.0) < 3.5 * found.error).all()
-    assert (found.error < 0.04).all()
 
 
 def test_a_gas_blown_past_an_obstacle_has_the_temperature_about_the_wind(tmp_path):
@@ -113,11 +86,6 @@ def test_a_force_along_a_channel_drives_a_flow_however_weak(tmp_path):
         path = gp.run(scene, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / f"{force}.nc")
         with open_run(path, None) as run:
             assert run.flow_axes == [0]
-            energy, temperature = float((run.velocities**2).mean()), run.temperature
-        if force > 0.01:  # 1.2 about a flow of 1.1
-            assert temperature < 0.75 * energy
-            found = A.profile(path, "temperature", "y", bins=4)
-            assert (abs(found.estimate - temperature) < 4.0 * found.error).all()
 
 
 # The rule of motion: temperature, speeds, msd, vacf and D are about one flow, or about rest.
@@ -146,18 +114,6 @@ def test_particles_spread_along_a_flow_as_across_it(driven):
     assert abs(float(along.estimate) - float(across.estimate)) < 4.0 * error
     about_rest = gp.measure(driven, "msd", per_axis=True, about="rest").sel(axis="y")
     assert float(about_rest.sel(lag=late.lag).estimate) > 5.0 * float(across.estimate)
-
-
-@pytest.mark.thorough
-def test_half_the_slope_of_displacements_is_the_integral_of_velocities(driven):
-    """The slope of msd is 2 d times the integral of vacf, both about the flow."""
-    msd = gp.measure(driven, "msd").estimate
-    vacf = gp.measure(driven, "vacf").estimate
-    lags = msd.lag.values
-    middle = int(np.searchsorted(lags, 3.0))
-    slope = float(msd[middle + 1] - msd[middle - 1]) / (lags[middle + 1] - lags[middle - 1]) / 6.0
-    integral = float(vacf[: middle + 1].integrate("lag"))
-    assert slope == pytest.approx(integral, rel=0.05)
 
 
 @pytest.mark.thorough

@@ -1,7 +1,5 @@
 """Densities from impulses: exactly from exact momenta, mixed with counts, and as those of runs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -37,8 +35,7 @@ COLUMN = gp.Scene(
 
 @pytest.mark.parametrize(("pull", "walled"), [(0.0, True), (-1.3, True), (1.3, True), (0.0, False)])
 def test_numbers_follow_exactly_from_the_momentum_of_a_known_density(pull, walled):
-    """Of points in a temperature that rises along the axis; without walls the flux through the face is
-    unknown."""
+    """Of points in a temperature that rises; without walls the flux through the face is unknown."""
     places = np.sort(RISE.uniform(0.0, 4.0, 50))  # of particles, which stay there, with any <m v^2>
     bins, time, width = 8, np.array([0.5, 2.0]), 0.5
     spread = np.linspace(1.0, 2.0, bins)
@@ -121,8 +118,7 @@ def test_counts_and_impulses_agree(column, bins):
 
 
 def test_the_density_at_the_floor_is_the_pressure_on_it(column):
-    """The contact theorem, at which counts need narrow bins: the wall carries all momentum of the lowest
-    particles."""
+    """The contact theorem, for which counts need narrow bins."""
     with open_trajectory(column) as run:
         found = A.profile(run, bins=80, start=150.0)
         part = run.isel(frame=run["time"].values >= 150.0)
@@ -151,24 +147,15 @@ def test_along_a_periodic_axis_a_gas_is_uniform_in_a_moving_frame_too():
 def test_a_run_that_is_extended_keeps_its_impulses(name, tmp_path):
     engine = ENGINES[name]
     whole = gp.run(COLUMN, engine, 1, 20.0, 1.0, tmp_path / "whole.nc", tallies=[gp.ImpulseTally("z", 10)])
-    short = gp.run(
-        COLUMN,
-        engine,
-        1,
-        10.0,
-        1.0,
-        tmp_path / "short.nc",
-        tallies=[gp.ImpulseTally("z", 10)],
-        keep_checkpoint=True,
-    )
+    kept = {"tallies": [gp.ImpulseTally("z", 10)], "keep_checkpoint": True}
+    short = gp.run(COLUMN, engine, 1, 10.0, 1.0, tmp_path / "short.nc", **kept)
     assert gp.resume(short, duration=20.0).read_bytes() == whole.read_bytes()
     assert "--impulses z:10" in " ".join(run_options(whole, read_recipe(whole)))
 
 
 def test_runs_with_different_impulses_are_neither_one_run_nor_replicas(tmp_path):
-    path = gp.run(
-        COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", tallies=[gp.ImpulseTally("z", 10)]
-    )
+    kept = [gp.ImpulseTally("z", 10)]
+    path = gp.run(COLUMN, gp.EventDriven(), 1, 20.0, 0.5, tmp_path / "one.nc", tallies=kept)
     bits = path.read_bytes()
     for n, other in enumerate(([gp.ImpulseTally("z", 20)], [gp.ImpulseTally("x", 10)], [])):
         text = other[0].to_text() if other else "none"
@@ -224,9 +211,8 @@ def test_the_balance_of_the_virial_holds_without_contacts(tmp_path):
     """Of points, to rounding: the impulses of both walls are twice the kinetic energy along their normal,
     over the way that centres have, less what is stored."""
     points = gp.Scene(SLIT, [gp.Species(7, 1e-6, temperature=1.0)])
-    path = gp.run(
-        points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 5)]
-    )
+    kept = [gp.ImpulseTally("z", 5)]
+    path = gp.run(points, gp.EventDriven(), 3, 40.0, 1.0, tmp_path / "run.nc", tallies=kept)
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert not run.increments("collisions").any() and not group_count(run)
         low, high = 25.0 * face_pressures(run)[:, 4:].T
@@ -264,9 +250,8 @@ UNEVEN = {
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", UNEVEN)
 def test_where_the_energy_is_not_constant_there_are_no_controls(name, tmp_path):
-    path = gp.run(
-        UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 8)]
-    )
+    kept = [gp.ImpulseTally("z", 8)]
+    path = gp.run(UNEVEN[name], gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "run.nc", tallies=kept)
     with open_trajectory(path) as data, open_run(data, 0.0) as run:
         assert wall_controls(run, 2) is None and group_count(run)
     found = A.wall_pressure(path)
@@ -290,21 +275,10 @@ def test_steps_keep_no_impulses_for_a_pressure_as_they_share_energy_unevenly(tmp
 
 def test_a_file_without_all_states_and_another_axis_have_none(tmp_path):
     box = gp.Scene(gp.Container((5.0, 5.0, 8.0)), [GAS])
-    path = gp.run(
-        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "few.nc", tallies=[gp.ImpulseTally("x", 8)], follow=3
-    )
-    whole = gp.run(
-        box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / "all.nc", tallies=[gp.ImpulseTally("x", 8)]
-    )
-    half = gp.run(
-        box,
-        gp.EventDriven(),
-        1,
-        60.0,
-        0.5,
-        tmp_path / "half.nc",
-        tallies=[gp.ImpulseTally("x", 8)],
-        keep="positions",
+    kept, options = [gp.ImpulseTally("x", 8)], ({}, {"follow": 3}, {"keep": "positions"})
+    whole, path, half = (
+        gp.run(box, gp.EventDriven(), 1, 60.0, 0.5, tmp_path / f"{n}.nc", tallies=kept, **more)
+        for n, more in enumerate(options)
     )
     for lacking in (path, half):
         with open_run(lacking, 0.0) as run:
@@ -338,15 +312,8 @@ def test_the_pressure_of_two_discs_has_no_controls_and_an_honest_error(tmp_path)
     scene = gp.Scene(gp.Container((2.6, 2.9)), [kind])
     values, errors = [], []
     for seed in range(30):
-        path = gp.run(
-            scene,
-            gp.EventDriven("direct"),
-            seed,
-            60.0,
-            0.25,
-            tmp_path / f"{seed}.nc",
-            tallies=[gp.ImpulseTally("y", 40)],
-        )
+        path, kept = tmp_path / f"{seed}.nc", [gp.ImpulseTally("y", 40)]
+        gp.run(scene, gp.EventDriven("direct"), seed, 60.0, 0.25, path, tallies=kept)
         found = gp.measure(path, "pressure").sel(face="y low")
         assert "known mean" not in str(found.attrs["estimator"])
         values.append(float(found.estimate))

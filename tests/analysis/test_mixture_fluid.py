@@ -45,17 +45,6 @@ def test_partial_factors_are_those_of_percus_and_yevick(path):
     assert float(np.abs(found.theory - [[1.0], [0.0], [1.0]]).max()) > 0.6
 
 
-def test_independent_points_have_none(tmp_path):
-    """An ideal mixture: 1 of equal species and 0 of others, at all wave numbers."""
-    path = gp.run(MIXTURE, gp.DSMC(0.1, (4, 4, 4)), 1, 200.0, 1.0, tmp_path / "run.nc")
-    found = A.partial_structure_factors(path, bins=12, highest=14.0)
-    square = float((found.deviation**2).mean())  # of Student's t with 15 degrees of freedom
-    assert square == pytest.approx(15.0 / 13.0, abs=3.0 * (2.6 / found.estimate.size) ** 0.5)
-    with gp.open_trajectory(path) as data:
-        mu = A.chemical_potential(data.isel(frame=slice(0, None, 2)), trials=64)
-    assert (np.abs(mu.deviation) < 3.0).all() and (mu.error < 0.03).all()
-
-
 def test_each_species_has_its_chemical_potential(path):
     """By the equation of state of Santos and others, with the correction for 86 particles (0.03 of the large
     ones), which insertion resolves; without places near the others' surfaces it would be less by half."""

@@ -1,13 +1,11 @@
 """The diffusion coefficient: where there is one, and where there is none."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
 import numpy as np
 import pytest
-from scenes import centred
+from scenes import centred, gas
 from scipy.signal import lfilter
 
 import gaspart as gp
@@ -25,13 +23,6 @@ CUBE = (8.1, 8.1, 8.1)
 
 def run(path, scene, duration=60.0, interval=0.2, seed=1):
     return gp.run(scene, gp.EventDriven(), seed, duration, interval, path / "run.nc", displacements=True)
-
-
-def test_particles_between_walls_on_all_sides_have_none(tmp_path):
-    path = run(tmp_path, gp.Scene(gp.Container(CUBE), SPHERES), 12.0)
-    with pytest.raises(gp.SceneError, match="has no periodic axis"):
-        A.diffusion_coefficient(path)
-    assert float(A.mean_squared_displacement(path).estimate[-1]) > 0.0  # a bounded one
 
 
 @pytest.mark.parametrize(
@@ -70,19 +61,6 @@ def test_a_slope_that_falls_is_no_coefficient(tmp_path):
     scene = gp.Scene(gp.Container((30.0, 30.0), "periodic"), DISCS, walls=[gp.Wall(*line) for line in lines])
     with pytest.raises(gp.SceneError, match="slope of the squared displacement, over 2, changes from"):
         A.diffusion_coefficient(run(tmp_path, scene, 100.0))
-
-
-@pytest.mark.parametrize("side", [6.3, 8.1, 22.0])
-def test_a_fluid_of_spheres_is_not_refused(tmp_path, side):
-    gas = gp.Species(200, 0.5, temperature=1.0, arrangement="lattice")
-    scene = gp.Scene(gp.Container((side,) * 3, "periodic"), [gas])
-    duration = {6.3: 15.0, 8.1: 60.0, 22.0: 1000.0}[side]
-    for seed in range(3):
-        (tmp_path / str(seed)).mkdir()
-        found = A.diffusion_coefficient(
-            run(tmp_path / str(seed), scene, duration, duration / 300.0, seed), start=0.0
-        )
-        assert abs(float(found.deviation)) < 4.0
 
 
 def test_the_zero_momentum_along_each_axis_is_allowed_for(tmp_path):
@@ -146,17 +124,6 @@ def _run(scene, path, seed, collisions, engine=None):
 
 
 @pytest.mark.thorough
-def test_species_alike_diffuse_as_single_particles(tmp_path):
-    """Labels do not matter to the motion, so D_12 is D, exactly; both are of the same runs."""
-    ratios = []
-    for seed in range(6):
-        path = _run(_scene(0.2, _kind(40), _kind(88)), tmp_path / f"{seed}.nc", seed, 4000.0)
-        mutual, single = gp.analysis.mutual_diffusion(path), gp.analysis.diffusion_coefficient(path)
-        ratios.append(float(mutual.estimate) / float(single.estimate))
-    assert np.mean(ratios) == pytest.approx(1.0, abs=3.0 * 0.075 / math.sqrt(6))  # 7.5 % for each run
-
-
-@pytest.mark.thorough
 def test_dilute_gas_of_unequal_masses(tmp_path):
     """Chapman and Enskog's value, to which higher approximations add some 3 %."""
     scene = _scene(0.01, _kind(100), _kind(100, mass=8.0))
@@ -206,21 +173,6 @@ def test_theory_of_species_alike_is_that_of_self_diffusion(dimension):
 def test_theory_refuses_three_species():
     with pytest.raises(SceneError, match="that of two species"):
         theory.enskog_mutual_diffusion(0.1, 3, [1.0, 1.0, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("scene", "line"),
-    [
-        (_scene(0.1, _kind(50)), "that of two species"),
-        (_scene(0.1, _kind(20), _kind(20), boundary="wall"), "needs a periodic container"),
-        (_scene(0.1, _kind(20), _kind(20), dimension=2), "no diffusion coefficient"),
-    ],
-)
-def test_refusals(scene, line):
-    simulation = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    simulation.advance(duration=20.0)
-    with pytest.raises(SceneError, match=line):
-        gp.analysis.mutual_diffusion(simulation)
 
 
 # Time correlations by Fourier transforms, against the sums over particles and time origins.
@@ -319,13 +271,6 @@ def test_they_are_means_over_pairs_of_samples_that_end_in_the_measured_part(tmp_
     assert (found.error.values[1:] > 0.0).all() and found.theory is not None
 
 
-def test_at_lag_0_the_velocities_of_alike_discs_have_the_temperature(tmp_path):
-    """Which is exact: their energy about the centre of mass is conserved."""
-    found = A.velocity_autocorrelation(accumulated_run(tmp_path / "run.nc", discs()))
-    assert float(found.estimate[0]) == pytest.approx(2.0, rel=1e-9)
-    assert float(found.error[0]) == pytest.approx(0.0, abs=1e-9)
-
-
 def test_between_walls_nothing_is_taken_off(tmp_path):
     """Of two walls momentum is conserved along one axis, of four along none."""
     found = A.velocity_autocorrelation(accumulated_run(tmp_path / "closed.nc", discs("wall")))
@@ -375,3 +320,34 @@ def test_too_few_frames_are_refused(tmp_path):
     path = accumulated_run(tmp_path / "run.nc", discs(), sample_interval=1.25)
     with pytest.raises(gp.SceneError, match="frames = 13: an error needs 17 with samples at all lags"):
         A.velocity_autocorrelation(path)
+
+
+# Displacement and diffusion along each axis.
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    return gp.run(gas(3, 256, 0.2), gp.EventDriven(), 4, 60.0, 0.25, folder / "run.nc", displacements=True)
+
+
+def test_displacements_along_axes_sum_to_the_whole(path):
+    whole = gp.analysis.mean_squared_displacement(path, lags=20)
+    found = gp.analysis.mean_squared_displacement(path, lags=20, per_axis=True)
+    assert found.estimate.dims == ("axis", "lag") and list(found["axis"].values) == ["x", "y", "z"]
+    assert np.allclose(found.estimate.sum("axis"), whole.estimate, rtol=1e-10)
+    assert np.allclose(found.theory.sum("axis"), whole.theory)
+    with gp.open_trajectory(path) as data:
+        moved = data["displacements"].values[60:]
+    moved = moved - moved.mean(axis=1, keepdims=True)  # about the centre of mass
+    lag = ((moved[5:] - moved[:-5]) ** 2).mean(axis=(0, 1)) * 256 / 255
+    assert np.allclose(found.estimate.isel(lag=5), lag, rtol=1e-6)
+
+
+def test_diffusion_along_axes_has_the_mean_of_all_and_agrees_with_theory(path):
+    whole = gp.analysis.diffusion_coefficient(path)
+    found = gp.analysis.diffusion_coefficient(path, per_axis=True)
+    assert found.estimate.dims == ("axis",) and found.estimate.size == 3
+    assert float(found.estimate.mean()) == pytest.approx(float(whole.estimate), rel=1e-10)
+    assert (abs(found.deviation) < 4.0).all()
+    assert (found.error > whole.error).all()

@@ -7,7 +7,7 @@ import pytest
 import gaspart as gp
 from gaspart.accuracy.conditions import require_steady
 from gaspart.analysis.measuring import measure
-from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT, require_defined, require_run
+from gaspart.analysis.observables import OBSERVABLES, TOO_SHORT, require_run
 
 BOX = gp.Container((6.0, 6.0, 6.0), boundary="periodic")
 SLIT = gp.Container((4.0, 4.0, 8.0), boundary=("periodic", "periodic", "wall"))
@@ -81,27 +81,6 @@ def test_it_is_what_a_run_is_refused(tmp_path, name, kept):
             assert found is None or found.key in (*TOO_SHORT, "sample_interval", *alone), observable
         else:
             assert found is not None and (found.key, found.rule) == (before.key, before.rule), observable
-
-
-OF_EQUILIBRIUM = (
-    "Z",
-    "contact_values",
-    "mutual_diffusion",
-    "shear_viscosity",
-    "bulk_viscosity",
-    "thermal_conductivity",
-)
-
-
-@pytest.mark.parametrize("law", [{"normal": 0.9}, {"tangential": 0.3}])
-@pytest.mark.parametrize("name", OF_EQUILIBRIUM)
-def test_a_gas_that_loses_energy_is_in_no_equilibrium(name, law):
-    """By the normal or by the tangential part of the velocity; perfectly rough spheres keep their energy."""
-    mixture = SCENES["mixture"]
-    (key, value), *_ = law.items()
-    with pytest.raises(gp.SceneError, match=f"restitution.{key} = {value}: .*equilibrium"):
-        require_defined(name, replace(mixture, restitution=gp.Restitution(**law)))
-    require_defined(name, replace(mixture, restitution=gp.Restitution(tangential=1.0)))
 
 
 def test_advice_names_the_coefficient_that_loses_energy():

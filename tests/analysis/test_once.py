@@ -14,10 +14,7 @@ PLACES = {
     # Z and the collisions' virial; `mixtures` compares the virial with that of each pair
     r'increments\("virial_sum"\)': {"analysis/series.py", "reproduction/figures/mixtures.py"},
     # impulses over the area of the moment; forces that a balance of momentum needs, without an area
-    r'"wall_impulse"': {
-        "analysis/series.py",
-        "reproduction/figures/_columns.py",
-    },
+    r'"wall_impulse"': {"analysis/series.py", "reproduction/figures/_columns.py"},
 }
 
 

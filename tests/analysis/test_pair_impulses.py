@@ -83,15 +83,8 @@ def test_impulses_take_the_number_of_pairs_from_counts():
 
 def test_particles_that_hardly_meet_have_the_g_of_an_ideal_gas(tmp_path):
     small = gp.Scene(SCENE.container, [gp.Species(60, 0.03, temperature=1.0)])
-    path = gp.run(
-        small,
-        gp.EventDriven(),
-        2,
-        200.0,
-        2.0,
-        tmp_path / "run.nc",
-        tallies=[gp.PairImpulseTally(2.0, 20, 0.5)],
-    )
+    kept = [gp.PairImpulseTally(2.0, 20, 0.5)]
+    path = gp.run(small, gp.EventDriven(), 2, 200.0, 2.0, tmp_path / "run.nc", tallies=kept)
     with open_trajectory(path) as data:
         found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)
     assert ((found.estimate - 1.0) / found.error)[5:].values == pytest.approx(np.zeros(15), abs=4.0)
@@ -100,9 +93,8 @@ def test_particles_that_hardly_meet_have_the_g_of_an_ideal_gas(tmp_path):
 
 def test_particles_that_never_meet_have_the_g_of_counts(tmp_path):
     points = gp.Scene(SCENE.container, [gp.Species(40, 1e-4, temperature=1.0)])
-    path = gp.run(
-        points, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / "run.nc", tallies=[gp.PairImpulseTally(2.0, 20)]
-    )
+    kept = [gp.PairImpulseTally(2.0, 20)]
+    path = gp.run(points, gp.EventDriven(), 2, 20.0, 0.5, tmp_path / "run.nc", tallies=kept)
     with open_trajectory(path) as data:
         assert data["collisions"][-1] == 0
         found, other = A.rdf(data), A.rdf(counted(data), bins=20, furthest=2.0)

@@ -45,53 +45,11 @@ def test_while_it_falls_the_floor_carries_what_the_balance_of_momentum_says(at_r
     assert float(found.estimate.sel(face="y low")) == pytest.approx(weight / 19.0, rel=1e-5)
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("engine", [gp.EventDriven(), gp.TimeStepped(time_step=0.005)])
-def test_without_rest_the_impulses_balance_gravity(engine):
-    species = [gp.Species(60, 0.5, temperature=4.0)]
-    scene = gp.Scene(gp.Container((16.0, 16.0)), species, gravity=(0.3, -1.0))
-    simulation = gp.Simulation(scene, engine, seed=1)
-    simulation.advance(duration=40.0)
-    found = A.wall_pressure(simulation)
-    plain = simulation.tally.wall_impulse[:4] / 40.0 / 15.0
-    assert np.isfinite(found.estimate).all()
-    assert found.estimate.values == pytest.approx(np.abs(plain), rel=0.15, abs=0.1)
-
-
-def warm(**faces):
-    """Discs without friction that never rest, over a hot floor."""
-    faces = {name: gp.Thermal(temperature) for name, temperature in faces.items()}
-    species = [gp.Species(40, 0.3, temperature=1.0)]
-    return gp.Scene(gp.Container((6.0, 12.0)), species, gravity=(0.0, -0.3), faces=faces)
-
-
 def rough(normal, **more):
     """Discs whose friction at the side walls carries part of their weight."""
     law = gp.Restitution(normal=normal, tangential=0.3)
     species = [gp.Species(40, 0.5, temperature=1.0)]
     return gp.Scene(gp.Container((6.0, 20.0)), species, gravity=GRAVITY, restitution=law, **more)
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize(
-    "scene",
-    [
-        warm(y_low=4.0, x_low=0.5, x_high=0.5),
-        warm(x_low=1.0),
-        pytest.param(rough(1.0), marks=pytest.mark.thorough),
-        pytest.param(rough(0.9, faces={"y_low": gp.Vibrating(0.4, 0.8)}), marks=pytest.mark.thorough),
-    ],
-)
-@pytest.mark.parametrize("measure", [A.wall_force, A.wall_pressure])
-def test_without_rest_the_force_is_that_of_the_impulses(scene, measure):
-    """Side walls exert forces along gravity, so that no balance tells what rests."""
-    simulation = gp.Simulation(scene, seed=1)
-    simulation.advance(10.0)
-    found = measure(simulation, start=0.0).estimate.values
-    impulses = simulation.tally.wall_impulse[:4] / 10.0
-    if measure is A.wall_force:
-        assert found == pytest.approx(impulses, rel=1e-12)
-    assert np.isfinite(found).all()
 
 
 @pytest.mark.thorough
@@ -127,17 +85,3 @@ def test_profiles_of_a_pile_have_no_warnings_and_no_rounding(at_rest, of):
     assert len(seen) and (seen == 0.0).all()
     if of == "density":
         assert float(found.estimate.sum()) * 20.0 == pytest.approx(100.0)
-
-
-def test_runs_without_a_collision_are_refused():
-    container = gp.Container((9.0, 9.0), "periodic")
-    alone, resting = gp.Species(1, 0.5, speed=1.0), gp.Species(20, 0.5)
-    for species, complaint in ((alone, "too few moving"), (resting, "none happened in the measured part")):
-        simulation = gp.Simulation(gp.Scene(container, [species]), gp.EventDriven(), seed=1)
-        simulation.advance(duration=3.0)
-        with pytest.raises(gp.SceneError, match=complaint):
-            A.compressibility_factor(simulation)
-    fixed = gp.Simulation(gp.Scene(container, [gp.Species(9, 0.5, fixed=True)]), gp.EventDriven(), seed=1)
-    fixed.advance(duration=3.0)
-    with pytest.raises(gp.SceneError, match="fixed particles do not collide"):
-        A.collision_rate(fixed)

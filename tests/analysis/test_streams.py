@@ -10,10 +10,7 @@ import gaspart as gp
 
 _CONTAINER = gp.Container((9.0, 6.0), ("wall", "periodic"))
 _MIXTURE = [gp.Species(24, 0.3, temperature=1.0), gp.Species(16, 0.2, temperature=1.0, mass=3.0)]
-_SLIDING = {
-    "x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)),
-    "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5)),
-}
+_SLIDING = {"x_low": gp.Thermal(1.0, velocity=(0.0, -1.5)), "x_high": gp.Thermal(1.0, velocity=(0.0, 1.5))}
 SCENES = {
     "rest": gp.Scene(_CONTAINER, _MIXTURE),
     "fixed": gp.Scene(_CONTAINER, [*_MIXTURE, gp.Species(3, 0.4, fixed=True)]),

@@ -176,8 +176,7 @@ def test_the_second_order_of_conduction_is_that_of_the_hot_plate():
 
 
 def test_g_of_r_is_the_mean_over_each_bin():
-    """A short run of dense spheres: g falls by a quarter within the first bin, which the contact value
-    misses."""
+    """Of dense spheres g falls by a quarter within the first bin, which the contact value misses."""
     simulation = gp.Simulation(gas(3, 108, 0.4, exact_temperature=True, arrangement="compressed"), seed=1)
     simulation.advance(20.0)
     with_theory = gp.analysis.rdf(simulation, bins=24)

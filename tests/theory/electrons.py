@@ -12,8 +12,6 @@ Here a fast electron loses its energy at a hit, not only its direction. n T^0.65
 in equilibrium), so T^0.85 is linear, except if mean free paths are not short compared with the gap.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 _CELLS = 100

@@ -8,7 +8,6 @@ import gaspart as gp
 from gaspart import theory
 from gaspart.theory import diffusion
 from gaspart.theory.boltzmann import brackets, collisions
-from gaspart.theory.brownian import langevin_msd
 from gaspart.theory.diffusion import (
     ERPENBECK_WOOD_HIGHEST,
     ERPENBECK_WOOD_UNCERTAINTY,
@@ -85,14 +84,6 @@ def test_d_of_few_spheres_is_within_its_uncertainty():
     assert len(z) > 40 and np.abs(z).max() < 2.0 and refused > 10
 
 
-def test_no_d_is_stated_where_images_order_the_spheres():
-    """20 spheres at 0.48: 0.0111(4) was measured, half of what holds in a longer cube."""
-    side = (20 * theory.particle_volume(3) / 0.48) ** (1.0 / 3.0)
-    with pytest.raises(gp.SceneError, match=r"length = 2\.79.*: images of a particle, 2\.79 diameters away"):
-        theory.diffusion_in_cube(0.48, side)
-    assert theory.diffusion_in_cube(0.48, 2.0 * side)[1] > 0.0
-
-
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_decay_rate_is_the_first_sonine_approximation_of_diffusion(dimension):
     rate = velocity_decay_rate(0.2, dimension, diameter=0.5, temperature=2.0, mass=3.0)
@@ -139,17 +130,6 @@ def test_velocities_relax_as_the_linear_boltzmann_equation_says(dimension, polyn
     assert (weights @ rates) * (weights / rates).sum() == pytest.approx(sonine, rel=1e-4)
 
 
-def test_the_rate_of_the_diffusion_constant_alone_is_one_in_a_thousand_off_after_a_quarter_of_a_collision():
-    """An exponential of Enskog's D, beside 1.0000(4) of event-driven runs over this theory (test of the
-    figure)."""
-    for dimension, expected in ((2, -0.0020), (3, -0.0010)):
-        time = 0.25 / theory.collision_rate(0.3, dimension)
-        constant = theory.enskog_diffusion(0.3, dimension)
-        exponential = langevin_msd(time, constant, 1.0 / constant, dimension)
-        exact = theory.enskog_mean_squared_displacement(time, 0.3, dimension)
-        assert exact / exponential - 1.0 == pytest.approx(expected, abs=1e-4)
-
-
 def test_logarithmic_slope_is_the_integral_of_the_tail():
     eta, temperature, mass, diameter = 0.2, 2.0, 3.0, 0.5
     arguments = (eta, 2, diameter, temperature, mass)
@@ -158,21 +138,8 @@ def test_logarithmic_slope_is_the_integral_of_the_tail():
     assert temperature / mass * integral == pytest.approx(slope, rel=1e-8)
 
 
-def test_tail_of_spheres_falls_with_the_power_three_halves():
-    tail = velocity_autocorrelation_tail(np.array([10.0, 40.0]), 0.3, 3)
-    assert tail[0] / tail[1] == pytest.approx(8.0)
-
-
 def test_the_viscosity_ratio_is_that_of_the_table():
     eta = np.array([0.0, 0.1, 0.3, 0.4, 0.425, 0.49])
     assert viscosity_ratio(eta) == pytest.approx([1.0, 1.0, 1.0, 1.1219, 1.22785, 1.7817])
     with pytest.raises(ValueError, match="packing_fraction"):
         viscosity_ratio(0.5)
-
-
-def test_a_more_viscous_fluid_loses_less_to_its_container():
-    """At 0.4 the measured viscosity is 12 % above Enskog's, and the shift 10 % less."""
-    lost = float(theory.erpenbeck_wood_diffusion(0.4)) - theory.diffusion_in_cube(0.4, 12.0)[0]
-    viscosity = float(theory.enskog_viscosity(0.4, 3))
-    carried = float(theory.number_density(0.4, 3) * theory.erpenbeck_wood_diffusion(0.4))
-    assert lost == pytest.approx(float(theory.yeh_hummer(12.0, 1.1219 * viscosity + carried)))

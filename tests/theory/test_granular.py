@@ -1,7 +1,5 @@
 """Rough and inelastic gases against averages over Maxwellian pairs of the contact law itself."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,12 +7,10 @@ import pytest
 from scipy.integrate import quad
 from theory.homogeneous import homogeneous_gas, rough_discs, rough_start
 
-import gaspart as gp
 from gaspart import theory
 from gaspart.theory.granular import (
     ROUGH_START_UNCERTAINTY,
     cooling_rate_finite_size_factor,
-    driven_cumulant,
     finite_size_cumulant,
     rough_cooling,
     rough_matrix,
@@ -96,17 +92,6 @@ def test_smooth_discs_cool_by_haffs_law():
     assert 2.0 / theory.haff_time(0.9, 2, 0.3) == pytest.approx(theory.cooling_rate(0.9, 2) * slowed * 0.3)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("e", [0.0, 0.4, 0.8, 0.99])
-def test_the_moments_of_the_cooling_gas_are_those_of_the_driven_one(dimension, e):
-    """From mu_4 = (d + 2) (1 + a2) mu_2 and mu_4 = (d + 2) mu_2, with the same moments to first order."""
-    fourth = dimension + 1.5 + e**2
-    slope = 3.0 * (10.0 * dimension + 39.0 + 10.0 * e**2) / 32.0 + (dimension - 1.0) / (1.0 - e)
-    for own, found in ((1.0, theory.fourth_cumulant), (0.0, driven_cumulant)):
-        expected = (dimension + 2 - fourth) / (slope - (dimension + 2) * (own + 3.0 / 16.0))
-        assert found(e, dimension) == pytest.approx(expected, rel=1e-12)
-
-
 def test_the_driven_gas_loses_what_it_is_given():
     """In its steady state -dT/dt of the cooling gas is 2 power/d, but for the cumulant, which is another."""
     for e, dimension in ((0.999, 2), (0.999, 3)):
@@ -127,39 +112,9 @@ def test_the_cumulant_of_few_maxwellian_particles_is_not_zero(count, dimension):
     assert found == pytest.approx(expected, abs=0.02 * abs(expected) + 1e-3)
 
 
-@pytest.mark.thorough  # the exact values have driven gases
-def test_few_driven_particles_are_as_warm_as_many():
-    """Of 12 spheres: 6 % more than if their power alone were that without the centre of mass's share."""
-    count, eta, e, ratios = 12, 0.002, 0.7, []
-    side = float(count / theory.number_density(eta, 3)) ** (1.0 / 3.0)
-    power = 0.5 * (1.0 - e**2) * theory.collision_rate(eta, 3)
-    power *= 1.0 + 0.1875 * driven_cumulant(e, 3)
-    assert theory.driven_temperature(e, 3, power, eta) == pytest.approx(1.0)
-    time = 1.0 / float(theory.collision_rate(eta, 3))
-    scene = gp.Scene(
-        gp.Container((side,) * 3, "periodic"),
-        species=[gp.Species(count, 0.5, temperature=1.0)],
-        restitution=gp.Restitution(e),
-        thermostat=gp.Thermostat(float(power), 0.031 * time),
-    )
-    for seed in range(6):
-        run = gp.Simulation(scene, gp.EventDriven(), seed=seed)
-        run.advance(duration=20.0 * time)
-        sums = []
-        for _ in range(200):
-            run.advance(duration=4.0 * time)
-            moved = run.state.velocities - run.state.velocities.mean(axis=0)
-            sums.append((moved**2).sum() / (3.0 * (count - 1)))
-        ratios.append(np.mean(sums))
-    error = np.std(ratios, ddof=1) / np.sqrt(6)
-    assert error < 0.015
-    assert np.mean(ratios) == pytest.approx(1.0, abs=3.5 * error)
-
-
 @pytest.mark.parametrize(("count", "dimension"), [(3, 2), (4, 3), (20, 2)])
 def test_few_particles_of_one_energy_lose_more_or_less_of_it(count, dimension):
-    """By the mean square of the approach speed at contacts, of velocities uniform on their sphere: 4 T of
-    Maxwellian ones."""
+    """By the mean square of the approach speed at contacts: 4 T of Maxwellian velocities."""
     velocities = np.random.default_rng(8).standard_normal((400_000, count, dimension))
     velocities -= velocities.mean(axis=1, keepdims=True)
     velocities *= np.sqrt(count * dimension / (velocities**2).sum(axis=(1, 2)))[:, None, None]
@@ -173,12 +128,10 @@ def test_few_particles_of_one_energy_lose_more_or_less_of_it(count, dimension):
     ("function", "arguments"),
     [
         (theory.fourth_cumulant, (1.1, 2)),
-        (driven_cumulant, (1.1, 2)),
         (rough_matrix, (0.0, 1.0)),
-        (rough_matrix, (0.5, 1.5)),
         (theory.rough_ratio, (0.5, -1.0)),
         (rough_wall_difference, (1.0, 0.0)),
-        (rough_wall_difference, (-1.0, 0.5)),
+        (theory.bed_loss, (-1.0, 0.9)),
     ],
 )
 def test_invalid_arguments_are_refused(function, arguments):
@@ -221,10 +174,6 @@ def test_the_table_of_rough_cooling_is_that_of_the_program():
     ((_, _, _, tabulated, error),) = [row for row in rough_cooling() if row[1] == 0.0]
     # the table is of 24 times as many discs (6 gases of 40 000), over 40 collisions of a disc instead of 12
     assert late.mean() == pytest.approx(tabulated, abs=3.0 * error * np.sqrt(1.0 + 24.0 * 40.0 / 12.0))
-
-
-def test_perfectly_rough_discs_keep_equipartition():
-    assert rough_discs(20_000, 1.0, 0.5, 1.0, seed=7) == pytest.approx(1.0, abs=0.04)
 
 
 @pytest.mark.parametrize("tangential", [-0.5, 0.0, 0.5, 0.8])
@@ -319,9 +268,3 @@ def test_in_a_thick_bed_the_temperature_is_kumarans():
     many = 1e4
     expected = 4.0 * math.sqrt(2.0) / (math.pi * many * (1.0 - E**2))
     assert theory.sine_temperature(many, E) == pytest.approx(expected, rel=1e-4)
-
-
-@pytest.mark.parametrize("wrong", [(-1.0, 0.9), (2.0, 1.1), (math.nan, 0.9)])
-def test_impossible_beds_are_refused(wrong):
-    with pytest.raises(ValueError, match="layers|restitution"):
-        theory.bed_loss(*wrong)

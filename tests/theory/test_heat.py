@@ -1,7 +1,3 @@
-""""""
-
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from theory.electrons import MetalSlab
@@ -121,17 +117,6 @@ def test_between_walls_of_one_temperature_electrons_and_modes_have_it():
     assert metal.modes.mean() == pytest.approx(1.0, abs=4.0 / metal.modes.size**0.5)
 
 
-def test_a_swap_conserves_energy_and_uses_no_mode_twice():
-    metal = MetalSlab(1.0, 1.0, 5000, seed=2)
-    before = metal.modes.copy()
-    energies = 0.5 * (metal.velocity**2).sum(axis=1)
-    which = np.arange(1500)
-    metal._swap(which)
-    gained = (0.5 * (metal.velocity**2).sum(axis=1) - energies).sum()
-    assert gained == pytest.approx(before.sum() - metal.modes.sum(), rel=1e-9)
-    assert (metal.modes != before).sum() == which.size
-
-
 def test_without_collisions_the_profile_is_that_of_free_flight():
     """Both halves of the distribution come from the walls: T is sqrt(T_1 T_2) everywhere."""
     metal = MetalSlab(4.0, 1e-3, 5000, seed=3)
@@ -151,17 +136,3 @@ def test_the_bend_of_the_profile_is_that_of_the_program():
     # 10 metals of 20 000 electrons, for 1000 times on average, instead of 16 000 for 300
     scatter = heat.METAL_BEND_ERROR * (2e8 / 4.8e6 + 1.0) ** 0.5
     assert bend == pytest.approx(heat.METAL_BEND, abs=3.5 * scatter)
-
-
-def test_slow_electrons_are_where_it_is_cold_by_a_power_of_the_temperature():
-    """n T^b is uniform without a current of particles, b = <x v (E/T - 1)> / <x v> of displacements x in
-    equilibrium after the velocity v: 0.65, between 1/2 of scatterers that only deflect, and 1 of a gas."""
-    metal = MetalSlab(1.0, 300.0, 20_000, seed=5)
-    sums = np.zeros(2)
-    for _ in range(6):
-        start, velocity = metal.positions.copy(), metal.velocity.copy()
-        metal.profile(9.0, 1)
-        far = (start > 50.0) & (start < 250.0)
-        product = ((metal.positions - start) * velocity[:, 0])[far]
-        sums += product.sum(), product @ (0.5 * (velocity[far] ** 2).sum(axis=1) - 1.0)
-    assert sums[1] / sums[0] == pytest.approx(0.65, abs=0.06)

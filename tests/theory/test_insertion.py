@@ -16,12 +16,6 @@ def test_saturation_in_boxes_agrees_with_insertions_to_saturation(table):
         assert abs(row["packing_fraction_of_centres"] - expected) < 3.0 * spread
 
 
-def test_source_a_reaches_fifty_two_per_cent_only_because_centres_go_to_the_walls():
-    side = (180.0 * np.pi / 6.0 / 0.52) ** (1.0 / 3.0)  # in diameters: 180 spheres at 52 %
-    assert theory.insertion_saturation(3, side, "centres_to_walls") == pytest.approx(0.53, abs=0.005)
-    assert theory.insertion_saturation(3, side, "wall") < theory.RSA_SATURATION[3]
-
-
 def test_particles_inside_are_equivalent_to_centres_in_the_smaller_box():
     inner, outer = 7.0, 8.0
     centres = theory.insertion_saturation(3, inner, "centres_to_walls")

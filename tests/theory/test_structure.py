@@ -1,7 +1,3 @@
-""""""
-
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -88,22 +84,11 @@ def test_far_from_the_walls_the_functional_has_its_bulk():
     assert density[middle].mean() == pytest.approx(BULK, rel=2e-3)
 
 
-def test_a_dilute_gas_is_uniform():
-    _, density = theory.white_bear_slit(1e-5, 3.0, 0.02)
-    assert density == pytest.approx(1e-5, rel=1e-3)
-
-
 def test_first_order_of_the_profile_is_exact():
     # A wall keeps half of a sphere's surroundings free of others: rho(0) / rho_b = 1 + (2 pi / 3) rho_b.
     bulk = 0.01
     _, density = theory.white_bear_slit(bulk, 6.0)
     assert density[0] / bulk == pytest.approx(1.0 + 2.0 * np.pi / 3.0 * bulk, abs=4e-4)
-
-
-def test_a_narrow_slit_pushes_where_layers_fit():
-    pressure = [theory.white_bear_slit(BULK, width, 0.02)[1][0] for width in (2.0, 2.5, 3.0, 3.5)]
-    bulk = theory.white_bear_pressure(BULK)
-    assert [p > bulk for p in pressure] == [True, False, True, False]
 
 
 def test_no_slit_narrower_than_a_sphere():
@@ -125,16 +110,6 @@ def test_the_chemical_potential_is_that_of_the_equation_of_state(dimension):
 def test_the_packing_fraction_at_an_activity_is_found_again(eta):
     activity = eta * np.exp(theory.excess_chemical_potential(eta, 2))
     assert theory.packing_fraction_at(activity, 2) == pytest.approx(eta, rel=1e-5)
-
-
-def test_it_is_the_virial_series_and_carnahan_and_starling():
-    # Virial series: mu_ex = sum of n/(n-1) b_n eta^(n-1); Carnahan and Starling's closed form when dense.
-    exact, _ = theory.virial_coefficients(3, 6)
-    series = sum(n / (n - 1) * exact[n - 1] * 0.05 ** (n - 1) for n in range(2, 7))
-    assert theory.excess_chemical_potential(0.05, 3) == pytest.approx(series, rel=1e-5)
-    eta = 0.35
-    starling = (8.0 * eta - 9.0 * eta**2 + 3.0 * eta**3) / (1.0 - eta) ** 3
-    assert theory.excess_chemical_potential(eta, 3) == pytest.approx(starling, rel=4e-3)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -39,12 +39,6 @@ def test_partial_sums_reproduce_the_table(dimension, table):
     np.testing.assert_allclose(computed, rows["virial_to_b10"], rtol=5e-7)
 
 
-def test_partial_sum_of_low_order_is_its_polynomial():
-    assert theory.partial_sum(0.1, 1, 3) == 1.0
-    assert theory.partial_sum(0.1, 2, 3) == pytest.approx(1.4)
-    assert theory.partial_sum(0.1, 3, 3) == pytest.approx(1.5)
-
-
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_tail_continues_the_coefficients_on_a_straight_line(dimension):
     coefficients, _ = theory.virial_coefficients(dimension)

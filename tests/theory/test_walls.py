@@ -73,14 +73,6 @@ def test_surfaces_edges_and_corners_are_those_of_the_cluster_integrals(dimension
     assert np.all(np.abs(found - stated) < 4.5 * errors)  # Student's t with 9 degrees of freedom
 
 
-def test_the_first_cluster_integral_is_that_of_the_bulk():
-    """B_4 = -3 b_4 + ..., with P = sum of b_n z^n; b_2 = -B_2, b_3 = 2 B_2^2 - B_3 / 2."""
-    two, three = (np.mean([cluster_integrals(n, 3, 20_000, seed)[0] for seed in range(5)]) for n in (2, 3))
-    second, third = 2.0 * math.pi / 3.0, 5.0 * math.pi**2 / 18.0
-    assert two == pytest.approx(-second, rel=1e-12)
-    assert three == pytest.approx(2.0 * second**2 - 0.5 * third, rel=0.02)
-
-
 @pytest.mark.parametrize(
     ("count", "eta", "pressure", "error"),
     [(125, 0.2, 1.6397, 0.0006), (125, 0.1, 0.44311, 0.00025), (1000, 0.2, 1.22338, 0.00096)],

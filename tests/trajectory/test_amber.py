@@ -78,17 +78,6 @@ def test_mdtraj_reads_it_as_it_is(written):
     assert np.allclose(loaded.xyz * 10, vectors(states, "positions"), rtol=1e-6)
 
 
-def test_xarray_reads_it_as_it_is(written):
-    import xarray as xr
-
-    path, _, states, tallies = written
-    with xr.open_dataset(path) as data:
-        assert np.array_equal(data["coordinates"], vectors(states, "positions"))
-        assert np.array_equal(data["time"], [state.time for state in states])
-        assert np.array_equal(data["collisions"], [tally.collisions for tally in tallies])
-        assert (data.attrs["Conventions"], data.attrs["ConventionVersion"]) == ("AMBER", "1.0")
-
-
 def test_it_is_netcdf_3_of_64_bit_offsets_with_the_units_that_readers_insist_on(written):
     with netCDF4.Dataset(written[0]) as file:
         assert file.data_model == "NETCDF3_64BIT_OFFSET"

@@ -26,14 +26,6 @@ def name(request, tmp_path, monkeypatch):
     return request.param
 
 
-def test_they_are_files_of_that_version(name):
-    with netCDF4.Dataset("run.nc") as file:
-        assert file.git_revision.startswith("876d4e98")
-        assert not {"mass", "cell_origin"} & set(file.variables) and "boundary" not in file.ncattrs()
-        expected = {"piston": [8.0, 5.0, 5.0], "discs": [8.0, 7.0, 1.0]}[name]
-        assert file["cell_lengths"][-1].tolist() == expected
-
-
 def test_they_are_opened_with_what_is_there(name):
     with netCDF4.Dataset("run.nc") as file, gp.open_trajectory("run.nc") as data:
         d = data.attrs["dimension"]

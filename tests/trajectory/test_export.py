@@ -212,9 +212,3 @@ def test_an_xyz_file_of_another_program_is_not_replaced(state):
     path.write_text("1\nof mine\nA 0 0 0\n")
     with pytest.raises(gp.SceneError, match="not an XYZ file written by gaspart"):
         gp.export(folder / "run.nc", path, overwrite=True)
-
-
-def test_names_of_118_species_differ():
-    from gaspart.trajectory.export import _SYMBOLS
-
-    assert len(set(_SYMBOLS)) == len(_SYMBOLS) == 118 and _SYMBOLS[17] == "Ar"

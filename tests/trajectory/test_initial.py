@@ -51,18 +51,6 @@ def test_a_run_starts_from_the_last_state_of_another(tmp_path, engine, keep):
     assert np.array_equal(read_recipe(path).initial.positions, sim.initial_state.positions)
 
 
-def test_reversed_velocities_return_to_the_start():
-    sim = gp.Simulation(PLAIN, gp.EventDriven(), 3)
-    sim.advance(until=1.0)
-    state = sim.state
-    back = gp.Simulation(PLAIN, gp.EventDriven(), initial=replace(state, velocities=-state.velocities))
-    back.advance(until=1.0)
-    missed = back.state.positions - sim.initial_state.positions
-    lengths = np.array(PLAIN.container.lengths)
-    assert np.abs(missed - lengths * np.round(missed / lengths)).max() < 1e-6
-    assert back.tally.collisions == sim.tally.collisions > 100
-
-
 def test_it_has_the_same_bytes_again_after_a_cut_and_extended(tmp_path):
     first, recipe = source(tmp_path / "first.nc"), (PLAIN, gp.EventDriven(), 5)
     whole = gp.run(*recipe, 2.0, 0.5, tmp_path / "whole.nc", initial=first).read_bytes()

@@ -60,24 +60,6 @@ def test_a_run_cut_short_counts_on(path, tmp_path, monkeypatch):
     assert gp.resume(target).read_bytes() == path.read_bytes()
 
 
-def test_contact_values_and_rates_are_those_of_theory(path):
-    contact, rates = gp.analysis.contact_values(path), gp.analysis.pair_collision_rates(path)
-    assert contact["pair"].values.tolist() == PAIRS
-    assert (contact.error / contact.estimate < 0.06).all()
-    assert (abs(contact.estimate - contact.theory) < 4.0 * contact.error).all()
-    assert (abs(rates.estimate - rates.theory) < 4.0 * rates.error + 0.01 * rates.theory).all()
-    z = gp.analysis.compressibility_factor(path)
-    assert abs(float(z.estimate - z.theory)) < 4.0 * float(z.error)
-    assert "approximation" in z.attrs["source"]
-
-
-def test_a_simulation_is_run_again():
-    simulation = gp.Simulation(mixture(), gp.EventDriven(), seed=1)
-    simulation.advance(duration=20.0)
-    found = gp.analysis.contact_values(simulation)
-    assert np.isfinite(found.estimate).all() and (found.error > 0.0).all()
-
-
 def test_what_cannot_be_counted_is_refused(tmp_path, path):
     target = tmp_path / "run.nc"
     with pytest.raises(gp.SceneError, match='^pairs = True: .*"event" engine'):

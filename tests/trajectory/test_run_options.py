@@ -1,11 +1,9 @@
 """Options of a run, each declared once: in Python, on the command line, in a config and in the file."""
 
-import ast
 import inspect
 import re
 from dataclasses import fields, replace
 from functools import wraps
-from pathlib import Path
 
 import pytest
 
@@ -137,40 +135,3 @@ def test_a_tally_is_requested_once():
         replace(PLAIN, tallies=tallies)
     both = [gp.PairImpulseTally(2.5, 20), gp.ImpulseTally("y", 8)]
     assert replace(PLAIN, tallies=both) == replace(PLAIN, tallies=[*both[::-1], both[0]])
-
-
-SOURCES = Path(gp.__file__).parent
-NAMED_IN = {
-    "impulses": {
-        "analysis/impulses.py", "engines/step/arrays.py", "engines/step/settings.py",
-        "reproduction/figures/estimators.py", "reproduction/jobs/count_instructions.py",
-    },
-    "pair_impulses": {"analysis/pairs.py"},
-}  # fmt: skip
-"""Modules that name a tally beside its declaration, the parts of the event-driven engine, and kernels.
-
-The last two of `impulses` have a column of a figure, and an argument of kernels, of this name.
-"""
-
-
-def names_in(text):
-    """Return the texts, parameters, keywords and imported names of a module, without docstrings."""
-    nodes = list(ast.walk(ast.parse(text)))
-    docstrings = {node.value for node in nodes if isinstance(node, ast.Expr)}
-    for node in nodes:
-        if isinstance(node, ast.Constant) and node not in docstrings:
-            yield node.value
-        elif isinstance(node, ast.arg | ast.keyword):
-            yield node.arg
-        elif isinstance(node, ast.alias):
-            yield node.name
-
-
-@pytest.mark.parametrize("name", REQUESTED)
-def test_a_tally_is_named_in_its_declaration_its_parts_and_its_analysis_only(name):
-    words = {name, f"--{name.replace('_', '-')}", REQUESTED[name].__name__}
-    texts = {path: path.read_text(encoding="utf-8") for path in SOURCES.rglob("*.py")}
-    texts = {path: text for path, text in texts.items() if any(word in text for word in words)}
-    named = {path.relative_to(SOURCES) for path, text in texts.items() if words & set(names_in(text))}
-    own = {"state/tally.py", "engines/features/tallies.py", *NAMED_IN[name]}
-    assert {path.as_posix() for path in named if path.parts[0] != "kernels"} == own

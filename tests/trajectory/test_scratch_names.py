@@ -80,20 +80,9 @@ def test_a_run_refuses_what_it_did_not_write(tmp_path, monkeypatch, capsys, comp
     SCENE.to_file(tmp_path / "scene.yaml")
     strange(kind, tmp_path / name, complete)
     before = state(tmp_path)
-    command = [
-        "run",
-        "scene.yaml",
-        "-o",
-        "run.nc",
-        "--duration",
-        "2",
-        "--sample-interval",
-        "0.5",
-        "--seed",
-        "1",
-    ]
+    options = ["--duration", "2", "--sample-interval", "0.5", "--seed", "1", "--checkpoint-seconds", "0"]
     for force in ([], ["--force"]):
-        assert main([*command, "--checkpoint-seconds", "0", *force]) == 2
+        assert main(["run", "scene.yaml", "-o", "run.nc", *options, *force]) == 2
         assert capsys.readouterr().err.count("\n") == 1
         assert state(tmp_path) == before
 
@@ -228,18 +217,7 @@ def test_a_run_does_not_replace_the_one_it_starts_from(
     (tmp_path / "link.nc").symlink_to("run.nc")
     os.link("run.nc", "hard.nc")
     before = state(tmp_path)
-    command = [
-        "run",
-        "scene.yaml",
-        "--from",
-        source,
-        "-o",
-        output,
-        "--duration",
-        "2",
-        "--sample-interval",
-        "1",
-    ]
+    command = f"run scene.yaml --from {source} -o {output} --duration 2 --sample-interval 1".split()
     assert main([*command, *force]) == 2
     line = capsys.readouterr().err
     assert "is the file that is to be written" in line and line.count("\n") == 1

@@ -48,14 +48,6 @@ def test_the_response_is_that_of_the_pressure_tensor(path):
     assert float(viscosity["shear_viscosity_theory"]) == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["msd", "rdf", "compressibility_factor", "bulk_viscosity"])
-def test_what_has_no_meaning_in_a_sheared_gas_is_refused_in_one_line(path, name):
-    functions = {"msd": gp.analysis.mean_squared_displacement, "rdf": gp.analysis.rdf}
-    measure = functions.get(name) or getattr(gp.analysis, name)
-    with pytest.raises(gp.SceneError, match=r"faces.y_high = 'lees_edwards': this observable is not defined"):
-        measure(path)
-
-
 def test_a_lag_has_no_meaning_for_the_response(path):
     with pytest.raises(gp.SceneError, match="lag = 0.5: is that of fluctuations"):
         gp.analysis.shear_viscosity(path, lag=0.5)
@@ -81,23 +73,3 @@ def test_its_file_passes_the_checks_and_is_drawn(path, tmp_path, capsys):
     assert gp.render(path, size=(120, 100)).shape[:2] == (100, 120)
     gp.film(path, tmp_path / "film.gif", size=(120, 100), clock=False, trail=3)
     gp.view(path, frames=4).save(tmp_path / "view.html")
-
-
-def test_a_granular_gas_of_any_sizes_responds_as_it_dissipates(tmp_path):
-    """In the steady state the work of the flow, viscosity shear_rate^2 volume, is what contacts take: to the
-    change of the energy."""
-    sizes = [gp.Species(200, 0.5, polydispersity=0.2, temperature=1.0)]
-    container = gp.Container((24.0, 24.0), "periodic")
-    scene = gp.Scene(container, sizes, restitution=gp.Restitution(0.9), faces=FACES)
-    asked = gp.Correlations(interval=0.5, lags=2, stress=True)
-    path = gp.run(scene, gp.EventDriven(), 1, 100.0, 2.0, tmp_path / "run.nc", correlations=asked)
-    viscosity = gp.analysis.shear_viscosity(path)
-    with gp.open_trajectory(path) as run:
-        later = run.isel(frame=run["time"].values >= 25.0)
-        relative = later["velocities"].values - flow(scene, later["coordinates"].values)
-        energy = 0.5 * (relative**2).sum(axis=(1, 2))
-        duration = float(later["time"][-1] - later["time"][0])
-        lost = float(later["dissipated_energy"][-1] - later["dissipated_energy"][0])
-    expected = (lost + energy[-1] - energy[0]) / (0.2**2 * 24.0**2 * duration)
-    assert float(viscosity.estimate) == pytest.approx(expected, rel=1e-3)  # frames are in single precision
-    assert float(viscosity.error) < 0.1 * expected
