@@ -85,13 +85,6 @@ def test_the_architecture_is_that_of_the_code():
     assert drawn.replace("&gt;", ">") == picture.stated(picture.reduced(graph)), "draw the picture again"
 
 
-def test_an_import_that_follows_from_others_is_not_drawn():
-    picture = script("architecture_picture")
-    graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}}
-    assert picture.reduced(graph) == {"a": set(), "b": {"a"}, "c": {"b"}}
-    assert picture.rows(picture.reduced(graph)) == {"c": 0, "b": 1, "a": 2}
-
-
 def named_files(text):
     """Paths of the files that a page names; in a row of a table, in the package of that row."""
     for line in text.splitlines():

@@ -61,13 +61,6 @@ def test_a_type_checker_finds_mistakes_in_the_use_of_public_names(tmp_path):
     assert found == [5, 6, 7, 8], done.stdout
 
 
-def test_theory_and_analysis_are_attributes():
-    assert gp.theory.compressibility_factor(0.1, 3) > 1.0
-    assert set(gp.analysis.__all__) <= set(dir(gp.analysis))
-    assert all(callable(getattr(gp.analysis, name)) for name in gp.analysis.__all__)
-    assert {"analysis", "theory"} <= set(dir(gp))
-
-
 def test_no_module_hides_an_observable():
     for module in pkgutil.iter_modules(gp.analysis.__path__, "gaspart.analysis."):
         import_module(module.name)
@@ -77,11 +70,6 @@ def test_no_module_hides_an_observable():
             expected = name if function == "profile" else function
             assert getattr(gp.analysis, name).__name__ == expected
     assert set(OBSERVABLES) <= set(gp.analysis.__all__)
-
-
-@pytest.mark.parametrize("name", ["compressibility_factor", "viscosity", "wall_pressure"])
-def test_an_alias_names_its_observable(name):
-    assert observable_name(name) in OBSERVABLES
 
 
 def test_an_accuracy_takes_aliases():

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from gaspart.reproduction.config import open_config
-
 ROOT = Path(__file__).parents[1]
 PACKAGE, RULES = ROOT / "src/gaspart", ROOT / "workflow/rules"
 UNSIGNED = "uint64"
@@ -141,26 +139,6 @@ def test_parameters_of_rules_depend_on_wildcards_alone():
     found = in_all(lambda text: parameters_of_jobs(text, functions), RULES, "*.smk")
     # on purpose, as its comment says: nothing but a missing stamp runs it
     assert found == {"workflow/rules/warm.smk": ["threads"]}
-
-
-def foreign_types(value):
-    """Types in a parameter that Snakemake does not record as they are, such as scalars of numpy."""
-    if isinstance(value, dict):
-        return {kind for pair in value.items() for one in pair for kind in foreign_types(one)}
-    if isinstance(value, (list, tuple)):
-        return {kind for one in value for kind in foreign_types(one)}
-    return set() if type(value) in (int, float, str, bool, type(None)) else {type(value).__name__}
-
-
-def test_parameters_of_points_are_plain_numbers_and_texts():
-    import numpy as np
-
-    assert foreign_types({"a": [1, (2.0, "b", None)], "c": np.float64(1.0)}) == {"float64"}
-    with open_config(ROOT / "config/smoke.yaml") as (config, points):
-        settings = list(config["figures"].values())
-        parameters = [[one.parameters, one.to_dict()] for of in points.values() for one in of.values()]
-    assert len(parameters) > 100
-    assert foreign_types([settings, parameters]) == set()
 
 
 # scipy, xarray, freud

@@ -7,7 +7,6 @@ import xarray as xr
 import gaspart as gp
 from gaspart.accuracy.target import Target
 from gaspart.analysis.observable import observable
-from gaspart.engines.engine import resolve_engine
 
 BOX = gp.Container((8.0, 8.0))
 SCENE = gp.Scene(BOX, gp.Species(10, 0.5, temperature=1.0))
@@ -33,19 +32,6 @@ def test_names_of_functions_are_names_of_observables(tmp_path):
         gp.SceneError, match="observable = 'presure': unknown observable; did you mean pressure?"
     ):
         gp.measure("run.nc", "presure")
-
-
-def test_engines_are_taken_by_name():
-    assert (
-        resolve_engine(None) == resolve_engine("event") == gp.EventDriven()
-        and resolve_engine("dsmc") == gp.DSMC()
-    )
-    with pytest.raises(gp.SceneError, match="engine.time_step = None: is required"):
-        resolve_engine("step")
-    with pytest.raises(gp.SceneError, match=r"engine.name = 'md': must be one of \('event'"):
-        gp.Simulation(SCENE, "md")
-    with pytest.raises(gp.SceneError, match="engine = 3: must be an engine: EventDriven"):
-        gp.Simulation(SCENE, 3)
 
 
 def test_a_face_has_two_names():

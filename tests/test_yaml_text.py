@@ -88,7 +88,10 @@ def test_a_path_that_cannot_be_read_is_one_line(path):
         read_yaml(path)
 
 
-def test_a_text_that_is_none_is_refused():
+def test_a_text_that_is_none_is_refused(tmp_path):
+    (tmp_path / "a.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SceneError, match="cannot be read"):
+        read_yaml(tmp_path / "a.yaml")
     for text in (None, 3, b"a: 1"):
         with pytest.raises(SceneError, match="must be text"):
             parse_yaml(text)

@@ -71,12 +71,6 @@ def test_the_help_starts_with_few_imports():
     assert "numpy" not in modules and len(modules) < 100, sorted(modules)
 
 
-def test_the_package_alone_imports_nothing_but_itself():
-    """The import machinery is there in some Pythons already."""
-    modules = imported("import gaspart") - imported("import importlib, warnings")
-    assert modules <= {"gaspart", "gaspart.public", "__future__"}
-
-
 def test_the_list_of_commands_has_a_description_for_each(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])

@@ -3,8 +3,6 @@
 import base64
 import io
 import re
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -105,10 +103,3 @@ def test_a_mistake_is_one_line(code, line, capsys):
         assert "Traceback" in printed.out + printed.err
     finally:
         InteractiveShell.clear_instance()
-
-
-def test_a_program_has_its_traceback():
-    done = subprocess.run(
-        [sys.executable, "-c", "import gaspart as gp; gp.Species(-1, 1.0)"], capture_output=True, text=True
-    )
-    assert "Traceback" in done.stderr and "count = -1" in done.stderr

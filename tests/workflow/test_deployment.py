@@ -190,13 +190,6 @@ def test_results_of_a_module_are_archived_and_verified(tmp_path, capsys):
         shutil.unpack_archive(archive, tmp_path / "unpacked")
 
 
-def test_a_figure_of_ones_own_is_laid_over_the_config_in_a_run_with_a_name(fresh, tmp_path):
-    own = tmp_path / "my_gas.yaml"
-    own.write_text("run: mine\n" + OWN[1])
-    targets = ["results/mine/figures/my_gas.png", "results/mine/claims/my_gas.csv"]
-    assert fresh.plan(*targets, "--configfile", str(own)) == STAGES
-
-
 def test_a_point_that_another_clone_has_simulated_comes_from_the_shared_cache(tmp_path, monkeypatch):
     (tmp_path / "shared").mkdir()
     monkeypatch.setenv("SNAKEMAKE_OUTPUT_CACHE", str(tmp_path / "shared"))
