@@ -152,11 +152,7 @@ def trajectory(tmp_path_factory):
 
 @pytest.mark.parametrize(
     ("name", "remedy"),
-    [
-        ("positions", "coordinates"),
-        ("velocity", "velocities"),
-        ("kinetic_enrgy", "kinetic_energy"),
-    ],
+    [("positions", "coordinates"), ("velocity", "velocities"), ("kinetic_enrgy", "kinetic_energy")],
 )
 def test_a_missing_variable_of_a_trajectory_suggests_another(trajectory, name, remedy):
     for data in (trajectory, trajectory.isel(frame=0), trajectory.copy(deep=True)):

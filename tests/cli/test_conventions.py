@@ -34,10 +34,7 @@ LINES = {
     ("periodic", ".nc"): [],
     ("walls", ".nc"): ["walls across x, y, z are read as periodic"],
     ("discs", ".nc"): ["walls across y are read as periodic", SLAB],
-    ("open", ".nc"): [
-        "walls across x are read as periodic",
-        "rows of NaN are numbers that no particle has",
-    ],
+    ("open", ".nc"): ["walls across x are read as periodic", "rows of NaN are numbers that no particle has"],
     ("piston", ".nc"): [
         "walls across x are read as periodic",
         "positions are in the cell after subtraction of cell_origin",

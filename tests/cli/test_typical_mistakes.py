@@ -169,10 +169,7 @@ OF_RUNS = {
         ["run", "gas.yaml", "-o", "gas.nc", *RUN[4:], "--seed", "7"],
         "exists, of another run, which differs in seed 0, not 7; move it away",
     ),
-    "run of another scene": (
-        ["run", "open.yaml", "-o", "gas.nc", *RUN[4:]],
-        "which differs in scene",
-    ),
+    "run of another scene": (["run", "open.yaml", "-o", "gas.nc", *RUN[4:]], "which differs in scene"),
     "misspelt observable": (["measure", "gas.nc", "presure"], "did you mean pressure?"),
     "g(r) between walls": (
         ["measure", "gas.nc", "rdf"],

@@ -230,8 +230,7 @@ def test_gases_in_separate_regions_have_each_their_exact_temperature(boundary):
 
 
 @pytest.mark.parametrize(
-    ("boundary", "axes"),
-    [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)],
+    ("boundary", "axes"), [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)]
 )
 def test_the_temperature_about_the_conserved_momentum_is_exact(boundary, axes):
     for seed in range(3):

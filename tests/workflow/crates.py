@@ -30,7 +30,7 @@ CONTEXTS = {
         "output": f"{WORKFLOW}#output",
     },
     "https://w3id.org/ro/terms/workflow-run/context": {
-        "sha256": "https://w3id.org/ro/terms/workflow-run#sha256",
+        "sha256": "https://w3id.org/ro/terms/workflow-run#sha256"
     },
 }
 
