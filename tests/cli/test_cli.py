@@ -149,18 +149,6 @@ def test_waiting_is_shown_on_a_terminal_after_a_while(monkeypatch):
     assert progress.picture_progress() is None and sys.stderr.getvalue() == ""
 
 
-def test_pictures_are_counted(monkeypatch):
-    terminal = io.StringIO()
-    terminal.isatty = lambda: True
-    monkeypatch.setattr(sys, "stderr", terminal)
-    clock = iter([100.0, 101.0, 110.0])
-    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
-    show = progress.picture_progress()
-    show(1, 40)
-    show(10, 40)
-    assert terminal.getvalue() == "\r\033[Kpicture 10 of 40  0:00:30 left"
-
-
 def throw(error):
     raise error
 

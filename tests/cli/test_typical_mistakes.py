@@ -64,12 +64,9 @@ MISTAKES = {
     "option without value": (line(*RUN, "--seed"), "--seed: expected one argument"),
     "two scenes": (line("run", "a.yaml", *RUN[1:]), "too many arguments; see `gaspart run --help`"),
     "no output": (line("run", "scene.yaml", "--duration", "1"), "required: -o/--output"),
-    "no duration": (line(*RUN[:4], "--sample-interval", "1"), "required: --duration"),
     "duration is a word": (line(*RUN, "--duration", "long"), "--duration: invalid float value: 'long'"),
-    "duration is negative": (line(*RUN, "--duration", "-1"), "duration = -1.0: must be positive"),
     "interval does not fit": (line(*RUN, "--sample-interval", "0.3"), "must be a whole multiple of sample"),
     "seed is a fraction": (line(*RUN, "--seed", "1.5"), "--seed: '1.5' must be a whole number"),
-    "seed is negative": (line(*RUN, "--seed", "-1"), "seed = -1"),
     "unknown engine": (
         line(*RUN, "--engine", "md"),
         "--engine: 'md': must be one of ('event', 'step', 'dsmc')",
@@ -103,7 +100,6 @@ MISTAKES = {
     # scene files
     "empty file": (("", CHECK), "must be a mapping"),
     "tab": (("container:\n\tlengths: [9, 9]\n", CHECK), "indent with spaces, not with tabs"),
-    "misspelt key": (scene("temperature", "temprature"), "unknown key; did you mean temperature?"),
     "older name": (added("bodies: []"), "bodies = []: unknown key; did you mean particles?"),
     "no radius": (scene("radius: 0.5, ", ""), "species[0].radius = None: is required"),
     "gravity along a periodic axis": (
@@ -114,7 +110,6 @@ MISTAKES = {
         scene("count: 20", "count: 150"),
         "scene.yaml: species[0].count = 150: does not fit by random insertion",
     ),
-    "list for a number": (scene("1.0", "[1.0, 2.0]"), "temperature = [1.0, 2.0]: must be a single number"),
     "reservoir without a temperature": (
         added("centres_to_walls: true\nfaces: {x_low: {kind: open, activity: 0.1}}"),
         "faces.x_low.temperature = None: must be given together with activity",
@@ -127,7 +122,6 @@ MISTAKES = {
         added("faces: {x_low: {kind: piston, speed: 1.5, mass: 10.0}}"),
         "must be mass and pressure, or speed alone",
     ),
-    "piston that recedes": (added("faces: {x_low: {kind: piston, speed: -1.5}}"), "must be positive"),
     "part of a wall that moves": (
         added("walls: [{start: [6.0, 0.0], end: [6.0, 9.0], mass: 5.0}]"),
         "a wall that moves must reach across the whole container",
@@ -171,16 +165,11 @@ OF_RUNS = {
     ),
     "run of another scene": (["run", "open.yaml", "-o", "gas.nc", *RUN[4:]], "which differs in scene"),
     "misspelt observable": (["measure", "gas.nc", "presure"], "did you mean pressure?"),
-    "g(r) between walls": (
-        ["measure", "gas.nc", "rdf"],
-        "needs a periodic container; set boundary: periodic",
-    ),
     "diffusion between walls": (["measure", "gas.nc", "D"], "displacements between walls are bounded"),
     "displacements of an open gas": (
         ["measure", "open.nc", "msd"],
         "lets particles enter and leave, and this observable follows particles that stay; defined here are",
     ),
-    "budget of a run": (["budget", "gas.nc"], "config = 'gas.nc': must be a config of the workflow (.yaml)"),
     "speeds that are not kept": (
         ["measure", "places.nc", "speeds"],
         "the file holds only positions of the particles, and velocities are needed; run without keep",
