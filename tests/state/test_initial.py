@@ -163,7 +163,7 @@ def test_random_particles_fill_the_space_between_a_lattice():
     apart[..., 1] = np.minimum(apart[..., 1], 20.0 - apart[..., 1])
     apart = np.linalg.norm(apart, axis=-1)
     np.fill_diagonal(apart, np.inf)
-    assert (apart >= state.radii[:, None] + state.radii).all()
+    assert closest(scene, state) >= 0.0
     nearest = apart[200:, 200:].min(axis=1)
     assert np.allclose(nearest, nearest[0]) and nearest[0] > 2.0  # all at one distance: a lattice
 
