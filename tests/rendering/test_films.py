@@ -207,13 +207,11 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
         (["discs.nc", "-o", "a.jpg"], "output = 'a.jpg': must end in .png, .mp4, .gif"),
         (["discs.nc", "-o", "new.png", "--frame", "5"], "frame = 5: must be one of 5 frames, counted from 0"),
         (["discs.nc", "-o", "new.gif", "--frame", "1"], "frame = 1: has no meaning for a film"),
-        (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
         (
             ["discs.nc", "-o", "new.gif", "--trail", "21"],
             "trail = 21: must be below 21, the number of particles",
         ),
         (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: requires discs"),
-        (["spheres.nc", "-o", "new.gif", "--camera", "0,91"], "camera = 91.0: an azimuth must be from"),
         (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be of the form 1000x750"),
         (["discs.nc", "-o", "new.png", "--colour", "red"], "colour = 'red': must be one of speed, species"),
         (["discs.nc", "-o", "none/a.png"], "path = 'none/a.png': cannot be written: No such file"),
