@@ -84,20 +84,13 @@ def test_a_view_is_kept_once():
     assert re.fullmatch(r"<View: a page of 0\.0\d+ MB, .*>", repr(view))
 
 
-@pytest.mark.parametrize(
-    ("code", "line"),
-    [
-        ("gp.Species(-1, 1.0)", "SceneError: count = -1: must be a whole number"),
-        ("raise gp.SimulationError('particles collapse')", "SimulationError: particles collapse"),
-    ],
-)
-def test_a_mistake_is_one_line(code, line, capsys):
+def test_a_mistake_is_one_line(capsys):
     shell = InteractiveShell()
     try:
-        shell.run_cell(f"import gaspart as gp\n{code}")
+        shell.run_cell("import gaspart as gp\ngp.Species(-1, 1.0)")
         printed = capsys.readouterr()
         text = re.sub(r"\x1b\[[0-9;]*m", "", printed.out + printed.err).strip()
-        assert text.startswith(line) and "\n" not in text
+        assert text.startswith("SceneError: count = -1: must be a whole number") and "\n" not in text
         shell.run_cell("1 / 0")  # other errors have their traceback
         printed = capsys.readouterr()
         assert "Traceback" in printed.out + printed.err
