@@ -109,12 +109,6 @@ def test_a_file_returns_the_scene(tmp_path_factory, scene):
     assert gp.Scene.from_file(path) == scene
 
 
-def test_numbers_in_a_file_may_be_written_as_people_write_them(tmp_path):
-    path = tmp_path / "scene.yaml"
-    path.write_text("container: {lengths: [1e1, 10]}\nspecies: [{count: 1, radius: 5e-1, speed: 1}]\n")
-    assert gp.Scene.from_file(path).species[0].radius == 0.5
-
-
 def test_derived_numbers():
     scene = gp.Scene.from_dict(GOOD)
     assert scene.count == 5
