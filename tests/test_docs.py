@@ -121,6 +121,13 @@ def test_lines_that_the_page_on_help_explains_exist():
     assert not [line for line in lines if line not in source]
 
 
+def test_links_between_pages_lead_somewhere():
+    for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]:
+        for target in re.findall(r"\]\(([^)#:]+)\)", path.read_text(encoding="utf-8")):
+            made = target.startswith("generated/")  # by `make docs`, which fails for a link to nothing
+            assert made or (path.parent / target).exists(), (path.name, target)
+
+
 def test_the_guide_explains_every_option_of_a_run():
     guide = " ".join(
         path.read_text(encoding="utf-8") for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
