@@ -100,10 +100,7 @@ def scene(number):
     if kind == "sliding":
         boundary = ("periodic",) * (dimension - 1) + ("wall",)
         along = (float(rng.uniform(0.2, 1.0)),) + (0.0,) * (dimension - 1)
-        options["faces"] = {
-            f"{last}_low": gp.Thermal(1.0),
-            f"{last}_high": gp.Thermal(1.0, velocity=along),
-        }
+        options["faces"] = {f"{last}_low": gp.Thermal(1.0), f"{last}_high": gp.Thermal(1.0, velocity=along)}
     if kind == "sheared":
         options["restitution"] = gp.Restitution(normal=float(rng.uniform(0.8, 0.95)))
         rate = float(gp.theory.collision_rate(fraction, dimension)) * float(rng.uniform(0.1, 0.5))

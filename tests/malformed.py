@@ -119,11 +119,7 @@ def mutated(draw, trees, values, most=3):
             break
         *way, key = draw(st.sampled_from(places))
         block = at(tree, way)
-        kind = draw(
-            st.sampled_from(
-                ["replace", "replace", "replace", "delete", "rename", "exchange", "double", "wrap"]
-            )
-        )
+        kind = draw(st.sampled_from(KINDS))
         if kind == "replace":
             block[key] = copy.deepcopy(draw(st.sampled_from(values)))
         elif kind == "delete":

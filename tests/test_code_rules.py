@@ -1,7 +1,6 @@
 """The size of functions, for which ruff has no rule: it counts statements, not lines."""
 
 import ast
-import re
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "src" / "gaspart"
@@ -34,37 +33,3 @@ def test_the_limit_is_noticed_and_counts_no_docstring():
 def test_functions_are_short():
     texts = {path: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
     assert {path: names for path, text in texts.items() if (names := long_functions(text))} == {}
-
-
-def homes(texts):
-    """{function or class: names of the modules and packages that have it}, and other names in docstrings: of
-    modules, of what classes have, and of what other libraries have."""
-    at, others = {}, {path.stem for path in texts} | {"field", "resolve"}
-    for path, text in texts.items():
-        tree = ast.parse(text)
-        for node in tree.body:
-            if isinstance(node, WITH_DOCSTRING):
-                at.setdefault(node.name, {"gp"}).update(("gaspart", *path.parts[:-1], path.stem))
-        for node in ast.walk(tree):
-            inner = node.body if isinstance(node, ast.ClassDef) else ()
-            others |= {
-                getattr(part, "name", getattr(getattr(part, "target", None), "id", "")) for part in inner
-            }
-    return at, others
-
-
-def dead_references(text, at, others):
-    """Names `module.function` in backticks whose module does not have the function."""
-    dotted = re.findall(r"(?<!`)`(?:\w+\.)*(\w+)\.(\w+)`(?!`)", text)
-    functions = at.keys() - others
-    return [f"{first}.{last}" for first, last in dotted if last in functions and first not in at[last]]
-
-
-def test_docstrings_name_functions_where_they_are():
-    """A module that was joined to another leaves its name in texts, which no tool reads."""
-    files = {path.relative_to(PACKAGE): path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
-    at, others = homes(files)
-    text = "See `boltzmann.tagged_paths`, not `homogeneous.tagged_paths`."
-    assert dead_references(text, at, others) == ["homogeneous.tagged_paths"]
-    dead = {path: names for path, text in files.items() if (names := dead_references(text, at, others))}
-    assert dead == {}

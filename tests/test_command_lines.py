@@ -38,84 +38,39 @@ experiments:
 """
 SCENES = {"scene.yaml": GAS, "balls.yaml": BALLS, "config.yaml": CONFIG}
 SCENES["empty.yaml"] = "container: {lengths: [9.0, 9.0]}\n"
-RUN = ["--duration", "1", "--sample-interval", "0.5"]
-STEP = ["--engine", "step", "--time-step", "0.125"]
-LINES = (
-    ["run", "scene.yaml", "-o", "new.nc", *RUN, "--seed", "1,2", "--follow", "3", "--displacements"],
-    [
-        "run",
-        "scene.yaml",
-        "-o",
-        "run.nc",
-        *RUN,
-        "--search",
-        "direct",
-        "--checkpoint-seconds",
-        "30",
-        "--quiet",
-    ],
-    ["run", "balls.yaml", "-o", "new.nc", *RUN, *STEP, "--precision", "float32", "--no-rewind"],
-    ["run", "scene.yaml", "-o", "new.nc", *RUN, *STEP, "--passes", "4", "--skin", "0.2", "--threads", "1"],
-    ["resume", "run.nc", "--checkpoint-seconds", "1", "--quiet"],
-    ["resume", "half.nc", "--checkpoint-seconds", "1"],
-    ["info", "run.nc", "--scene"],
-    ["info", "half.nc"],
-    ["render", "run.nc", "-o", "new.png", "--size", "64x48", "--frame", "1", "--colour", "species"],
-    [
-        "render",
-        "run.nc",
-        "-o",
-        "new.gif",
-        "--size",
-        "64x48",
-        "--plain",
-        "--frames-per-second",
-        "5",
-        "--trail",
-        "0",
-    ],
-    ["render", "run.nc", "-o", "new.mp4", "--size", "64x48", "--plain", "--frames-per-second", "5"],
-    ["collisions", "scene.yaml", "-o", "new.nc", "--count", "30", "--equilibration", "0.5", "--seed", "3"],
-    ["collisions", "balls.yaml", "-o", "met.nc", "--count", "30"],
-    ["export", "run.nc", "-o", "new.gsd", "--frame", "0"],
-    ["export", "run.nc", "-o", "state.data", "--frame", "-1"],
-    ["theory", "Z", "--eta", "0.1,0.2", "--dimension", "2"],
-    ["theory", "viscosity", "--eta", "0.3", "--diameter", "2", "--temperature", "0.5", "--mass", "3"],
-    ["advise", "scene.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s", "--pilot", "0.1"],
-    ["advise", "--config", "config.yaml"],
-    [
-        "check",
-        "run.nc",
-        "--radius",
-        "0.5",
-        "--lengths",
-        "9,9",
-        "--boundary",
-        "periodic",
-        "--tolerance",
-        "1e-6",
-    ],
-    ["check", "scene.yaml", "--tolerance", "1e-6"],
-    ["check", "config.yaml"],
-)
+RUN = "--duration 1 --sample-interval 0.5"
+STEP = "--engine step --time-step 0.125"
+LINES = f"""
+run scene.yaml -o new.nc {RUN} --seed 1,2 --follow 3 --displacements
+run scene.yaml -o run.nc {RUN} --search direct --checkpoint-seconds 30 --quiet
+run balls.yaml -o new.nc {RUN} {STEP} --precision float32 --no-rewind
+run scene.yaml -o new.nc {RUN} {STEP} --passes 4 --skin 0.2 --threads 1
+resume run.nc --checkpoint-seconds 1 --quiet
+resume half.nc --checkpoint-seconds 1
+info run.nc --scene
+info half.nc
+render run.nc -o new.png --size 64x48 --frame 1 --colour species
+render run.nc -o new.gif --size 64x48 --plain --frames-per-second 5 --trail 0
+render run.nc -o new.mp4 --size 64x48 --plain --frames-per-second 5
+collisions scene.yaml -o new.nc --count 30 --equilibration 0.5 --seed 3
+collisions balls.yaml -o met.nc --count 30
+export run.nc -o new.gsd --frame 0
+export run.nc -o state.data --frame -1
+theory Z --eta 0.1,0.2 --dimension 2
+theory viscosity --eta 0.3 --diameter 2 --temperature 0.5 --mass 3
+advise scene.yaml --observable Z --accuracy 0.01 --budget 60s --pilot 0.1
+advise --config config.yaml
+check run.nc --radius 0.5 --lengths 9,9 --boundary periodic --tolerance 1e-6
+check scene.yaml --tolerance 1e-6
+check config.yaml
+"""
+LINES = tuple(line.split() for line in LINES.strip().splitlines())
 USED = sorted({word for line in LINES for word in line})
 NUMBERS = ("0", "-0.0", "1", "-1", "3", "0.5", "1e-300", "1e308", "1e400", "nan", "-inf", "inf", "1e20")
 NUMBERS += (str(10**20), "9" * 5000, "0x10", "1_0", "\u0967", "1,2", "1,,2", ",", "20x20", "64x")
 WORDS = ("", " ", "-", "--", "\x01", "\u00e9\n", "\udcff", "speed", "periodic", "event", "{}", "%s", "@a")
-FILES = (
-    "scene.yaml",
-    "run.nc",
-    "state.data",
-    "new.gsd",
-    "new.nc",
-    "new.png",
-    "new.mp4/",
-    "link.nc",
-    "half.nc",
-    "empty.yaml",
-    "folder",
-)
-FILES += (".", "/", "none/x", "/dev/null", "x" * 300)
+FILES = ["scene.yaml", "run.nc", "state.data", "new.gsd", "new.nc", "new.png", "new.mp4/", "link.nc"]
+FILES += ["half.nc", "empty.yaml", "folder", ".", "/", "none/x", "/dev/null", "x" * 300]
 NEW = ("--force", "--help", "--version", "--frame", "--sed", "-x", "-o", "", "\udcff", "scene.yaml", "run")
 UNFINISHED = Path("half.nc.partial")
 ENDLESS = {"--duration": 10.0, "--equilibration": 10.0, "--sample-interval": 10.0, "--count": 1e5}

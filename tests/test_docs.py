@@ -1,4 +1,5 @@
-"""The pages in docs/: what they show runs as it stands there, and the reference is complete."""
+"""The pages in docs/: what they show runs as it stands there, the reference is complete, and pictures of the
+README are those of complete results."""
 
 import ast
 import importlib.util
@@ -6,7 +7,10 @@ import re
 import shlex
 from pathlib import Path
 
+import netCDF4
+import numpy as np
 import pytest
+from PIL import Image
 
 import gaspart as gp
 from gaspart.cli import commands, main
@@ -85,13 +89,6 @@ def test_the_architecture_is_that_of_the_code():
     assert drawn.replace("&gt;", ">") == picture.stated(picture.reduced(graph)), "draw the picture again"
 
 
-def test_an_import_that_follows_from_others_is_not_drawn():
-    picture = script("architecture_picture")
-    graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}}
-    assert picture.reduced(graph) == {"a": set(), "b": {"a"}, "c": {"b"}}
-    assert picture.rows(picture.reduced(graph)) == {"c": 0, "b": 1, "a": 2}
-
-
 def named_files(text):
     """Paths of the files that a page names; in a row of a table, in the package of that row."""
     for line in text.splitlines():
@@ -147,3 +144,56 @@ def test_the_scenes_of_the_page_on_scene_files_are_valid():
     kinds = {face.kind for scene in scenes for face in scene.faces.values()}
     walls = {type(wall) for scene in scenes for wall in scene.walls}
     assert kinds == set(FACE_KINDS) and walls == {gp.Wall, gp.Plate}
+
+
+@pytest.fixture(scope="module")
+def gallery():
+    return script("gallery")
+
+
+@pytest.fixture
+def results(tmp_path, gallery):
+    """Figures of one colour, as a complete reproduction leaves them."""
+    for folder in ("figures", "measurements"):
+        (tmp_path / folder).mkdir()
+    for n, name in enumerate(name for names in gallery.COLUMNS for name in names):
+        Image.new("RGB", (700, 500), (40 * n, 0, 0)).save(tmp_path / f"figures/{name}.png")
+        with netCDF4.Dataset(tmp_path / f"measurements/{name}.nc", "w") as data:
+            data.config, data.git_revision = "full reproduction", "abc"
+    return tmp_path
+
+
+def test_it_is_made_of_the_figures_and_names_their_results(gallery, results):
+    gallery.gallery(results, results / "a.png")
+    gallery.gallery(results, results / "b.png")
+    assert (results / "a.png").read_bytes() == (results / "b.png").read_bytes()
+    with Image.open(results / "a.png") as picture:
+        assert picture.text == {"config": "full reproduction", "revision": "abc"}
+        first, second = gallery.COLUMNS.values()
+        assert picture.width == first + gallery.GAP + second
+        assert [picture.getpixel((x + 9, 9))[0] for x in (0, first + gallery.GAP)] == [0, 80]
+
+
+def test_results_of_another_config_do_not_replace_it(gallery, results):
+    with netCDF4.Dataset(results / "measurements/virial_spheres.nc", "a") as data:
+        data.config = "smoke"
+    with pytest.raises(ValueError, match="is of 'smoke', not of 'full reproduction'"):
+        gallery.gallery(results, results / "a.png")
+    (results / "figures/virial_spheres.png").unlink()
+    with pytest.raises(ValueError, match="missing"):
+        gallery.gallery(results, results / "a.png")
+    assert not (results / "a.png").exists()
+
+
+def test_the_picture_that_is_kept_names_its_results():
+    with Image.open(DOCS / "gallery.png") as picture:
+        assert picture.text["config"] == "full reproduction" and picture.text["revision"]
+
+
+def test_the_gallery_and_its_picture_follow_from_the_scenes():
+    """If not: python docs/contact_sheet.py."""
+    contact_sheet = script("contact_sheet")
+    assert (DOCS / "gallery.md").read_text(encoding="utf-8") == contact_sheet.page()
+    with Image.open(DOCS / "scenes.png") as kept:
+        difference = np.abs(np.asarray(kept.convert("RGB"), float) - np.asarray(contact_sheet.sheet(), float))
+    assert difference.mean() < 2.0  # of 255: a palette of 256 colours

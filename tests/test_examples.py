@@ -44,8 +44,7 @@ EXAMPLES = [name for name, item in ITEMS.items() if ">>>" in (inspect.getdoc(ite
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.thorough if name in LONG else ()) for name in EXAMPLES],
+    "name", [pytest.param(name, marks=pytest.mark.thorough if name in LONG else ()) for name in EXAMPLES]
 )
 def test_an_example_gives_what_it_states(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

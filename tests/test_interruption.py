@@ -9,7 +9,6 @@ import subprocess
 import sys
 import textwrap
 import time
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -93,28 +92,12 @@ def saved_time(path, engine):
         return float(saved["start"] + saved["clock"] if engine == "event" else saved["steps"] * 0.015625)
 
 
-def with_signals(cases, few):
-    """Each case with each signal; `make test` has these few, a case for each signal."""
-    return [
-        pytest.param(
-            case,
-            number,
-            id=f"{case}-{number.name}",
-            marks=() if few.get(case) == number else pytest.mark.thorough,
-        )
-        for case, number in product(cases, SIGNALS)
-    ]
-
-
-@pytest.mark.parametrize(
-    ("engine", "number"),
-    with_signals(["event", "step", "threads"], {"event": signal.SIGINT, "threads": signal.SIGTERM}),
-)
+@pytest.mark.parametrize(("engine", "number"), [("event", signal.SIGINT), ("threads", signal.SIGTERM)])
 def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, number):
-    options = {"event": [], "step": ["--engine", "step", "--time-step", "0.015625"]}
-    options["threads"] = [*options["step"], "--threads", "2"]
-    often = ["--checkpoint-seconds", "1"]
-    process = start("run", "scene.yaml", "-o", "a run.nc", *LONG, *often, *options[engine], folder=folder)
+    options = ["--checkpoint-seconds", "1"]
+    if engine == "threads":
+        options += ["--engine", "step", "--time-step", "0.015625", "--threads", "2"]
+    process = start("run", "scene.yaml", "-o", "a run.nc", *LONG, *options, folder=folder)
     wait_for(checkpoint_path(folder / "a run.nc").exists)
     before = saved_time(folder / "a run.nc", engine)
     printed = ended(process, number)
@@ -131,9 +114,7 @@ def test_a_run_ends_with_a_checkpoint_and_says_how_to_continue(folder, engine, n
     assert printed in early or "nothing was changed" in printed or "continues it from time" in printed
 
 
-@pytest.mark.parametrize(
-    ("wait", "number"), with_signals([0.0, 0.05, 0.5], {0.0: signal.SIGTERM, 0.5: signal.SIGINT})
-)
+@pytest.mark.parametrize(("wait", "number"), [(0.0, signal.SIGTERM), (0.5, signal.SIGINT)])
 def test_other_commands_end_at_once_during_imports_too(folder, number, wait):
     # for some seconds; so many more that they need more memory than there is would be refused at once
     process = start("collisions", "scene.yaml", "-o", "met.nc", "--count", "5000000", folder=folder)

@@ -62,17 +62,11 @@ def test_valid_ones_are_accepted():
 @pytest.mark.parametrize(
     ("kind", "changes", "message"),
     [
-        (gp.Species, {"count": 1e20}, "count = 1e+20: must be at most 2147483647"),
         (gp.Species, {"count": 10**400}, "count = <an integer of 401 digits>: must be a whole number"),
         (gp.Species, {"radius": 1e300}, "radius = 1e+300: must be from 1e-60 to 1e+60: choose other units"),
-        (gp.Species, {"moment_of_inertia": 1e-300}, "moment_of_inertia = 1e-300: must be from 1e-60"),
         (gp.Wall, {"end": (1.0 + 1e-300, 1.0), "start": (1.0, 1.0)}, "must have a length"),
-        (gp.Wall, {"start": (0.0, 0.0), "end": (1e-200, 0.0)}, "length = 1e-200: must be from 1e-60"),
         (Plate, {"edges": ((1e-300, 0.0, 0.0), (0.0, 1.0, 0.0))}, "edges = 1e-300: must be from 1e-60"),
-        (Well, {"width": 1e-300}, "width = 1e-300: must be from 1e-60"),
-        (gp.Scene, {"container": None}, "container = None: must be a Container"),
         (gp.Scene, {"species": None}, "species = None: must be a Species"),
-        (gp.Scene, {"particles": [gp.Container((1.0, 1.0))]}, "particles[0] = Container"),
         (gp.Scene, {"gravity": (0.0, 1e300)}, "gravity = (0.0, 1e+300): must be 0 or of a size"),
         (gp.Container, {"lengths": range(10**9)}, "must be a list of 2 or 3 finite numbers"),
     ],

@@ -62,11 +62,6 @@ def wheel(made):
     return path
 
 
-def test_their_names_have_the_version(made):
-    expected = {f"gaspart-{gp.__version__}.tar.gz", f"gaspart-{gp.__version__}-py3-none-any.whl"}
-    assert {path.name for path in made.iterdir()} == expected
-
-
 def test_the_source_distribution_is_the_project(made):
     (path,) = made.glob("*.tar.gz")
     with tarfile.open(path) as file:

@@ -1,4 +1,4 @@
-"""The names of `import gaspart`: loaded when first used."""
+"""The names of `import gaspart`, loaded when first used, and of engines, observables and faces."""
 
 import os
 import pkgutil
@@ -7,10 +7,15 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 import gaspart as gp
+from gaspart.accuracy.target import Target
+from gaspart.analysis.observable import observable
 from gaspart.analysis.observables import ALIASES, OBSERVABLES, observable_name
+from gaspart.engines.engine import resolve_engine
 from gaspart.public import entries, read_stub
 
 ROOT = Path(__file__).parents[1]
@@ -61,13 +66,6 @@ def test_a_type_checker_finds_mistakes_in_the_use_of_public_names(tmp_path):
     assert found == [5, 6, 7, 8], done.stdout
 
 
-def test_theory_and_analysis_are_attributes():
-    assert gp.theory.compressibility_factor(0.1, 3) > 1.0
-    assert set(gp.analysis.__all__) <= set(dir(gp.analysis))
-    assert all(callable(getattr(gp.analysis, name)) for name in gp.analysis.__all__)
-    assert {"analysis", "theory"} <= set(dir(gp))
-
-
 def test_no_module_hides_an_observable():
     for module in pkgutil.iter_modules(gp.analysis.__path__, "gaspart.analysis."):
         import_module(module.name)
@@ -77,11 +75,6 @@ def test_no_module_hides_an_observable():
             expected = name if function == "profile" else function
             assert getattr(gp.analysis, name).__name__ == expected
     assert set(OBSERVABLES) <= set(gp.analysis.__all__)
-
-
-@pytest.mark.parametrize("name", ["compressibility_factor", "viscosity", "wall_pressure"])
-def test_an_alias_names_its_observable(name):
-    assert observable_name(name) in OBSERVABLES
 
 
 def test_an_accuracy_takes_aliases():
@@ -101,3 +94,59 @@ def test_a_plot_over_frames_has_the_time_as_its_axis(tmp_path):
     gp.run(scene, gp.TimeStepped(time_step=0.01), 1, 2.0, 0.5, tmp_path / "b.nc")
     with gp.open_trajectory(tmp_path / "b.nc") as trajectory:
         assert trajectory["steps"].values[-1] == 200
+
+
+# The words of the command line are those of Python, and both names of a face are taken.
+
+BOX = gp.Container((8.0, 8.0))
+SCENE = gp.Scene(BOX, gp.Species(10, 0.5, temperature=1.0))
+WARM = gp.Thermal(2.0)
+
+
+def test_a_run_has_a_default_engine_and_seed_and_is_measured_by_name(tmp_path):
+    usual = gp.run(SCENE, duration=4.0, sample_interval=0.125, path=tmp_path / "usual.nc")
+    stated = gp.run(SCENE, gp.EventDriven(), 0, 4.0, 0.125, tmp_path / "stated.nc")
+    assert usual.read_bytes() == stated.read_bytes()
+    pressure = gp.measure(usual, "pressure")
+    xr.testing.assert_identical(pressure, gp.analysis.wall_pressure(usual))
+    assert pressure.sel(face="y_low").estimate == pressure.sel(face="y low").estimate
+    assert pressure.sel({"face": "y_low"}).estimate == pressure.estimate[2]
+
+
+def test_names_of_functions_are_names_of_observables(tmp_path):
+    run = gp.run(SCENE, duration=4.0, sample_interval=0.125, path=tmp_path / "run.nc")
+    measured = gp.measure(run, ["wall_pressure", "collision_rate"])
+    assert list(measured) == ["pressure", "collision_rate"]
+    xr.testing.assert_identical(measured["pressure"], gp.analysis.pressure(run))
+    with pytest.raises(
+        gp.SceneError, match="observable = 'presure': unknown observable; did you mean pressure?"
+    ):
+        gp.measure("run.nc", "presure")
+
+
+def test_engines_are_taken_by_name():
+    assert resolve_engine(None) == resolve_engine("event") == gp.EventDriven()
+    assert resolve_engine("dsmc") == gp.DSMC()
+    for given, rule in (
+        ("step", "engine.time_step = None: is required"),
+        ("md", "name = 'md': must be one of"),
+    ):
+        with pytest.raises(gp.SceneError, match=rule):
+            resolve_engine(given)
+
+
+def test_a_face_has_two_names():
+    warm = gp.Scene(BOX, SCENE.species, faces={"y low": WARM})
+    assert warm == gp.Scene(BOX, SCENE.species, faces={"y_low": WARM}) and list(warm.faces) == ["y_low"]
+    assert (
+        gp.Scene.from_dict({**SCENE.to_dict(), "faces": {"y low": {"kind": "thermal", "temperature": 2.0}}})
+        == warm
+    )
+    with pytest.raises(gp.SceneError, match="faces.up = .*unknown face; known are x_low"):
+        gp.Scene(BOX, faces={"up": WARM})
+    assert gp.Accuracy("pressure", 0.1, face="x_low") == gp.Accuracy.from_name("pressure:x low", 0.1)
+    assert gp.Accuracy.from_name("pressure:x_low", 0.1).name == "pressure:x low"
+    assert Target.from_name(SCENE, "pressure:x_low") == Target.from_name(SCENE, "pressure: x low")
+    along = {"face": (np.array(["x low", "x high"]), {})}
+    found = observable("p", along, np.array([1.0, 2.0]), np.zeros(2), units="1", long_name="p")
+    assert found.sel(face=["x_high"]).estimate.values.tolist() == [2.0]

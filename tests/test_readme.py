@@ -84,13 +84,5 @@ def test_numbers_on_pages_are_those_of_the_project():
     assert f"can cost {highest:g} times as much" in text
     shown = re.search(r"^SHOWN = (.*)", (root / "docs/contact_sheet.py").read_text("utf-8"), re.MULTILINE)[1]
     assert f"![{WORDS[len(literal_eval(shown))].capitalize()} scenes: " in text
-    notebooks = {path.stem for path in (root / "docs/notebooks").glob("*.ipynb")}
-    tutorials = set(re.findall(r"docs/notebooks/(\w+)\.ipynb", text))
-    classics = notebooks - tutorials
-    assert f"{WORDS[len(tutorials)].capitalize()} [notebooks](docs/notebooks/index.md)" in text
-    assert f"{WORDS[len(tutorials)].capitalize()} tutorials and {WORDS[len(classics)]} classics" in changes
-    assert f"documentation has {len(pages)} pages" in changes
     exact = json.loads((root / "tests/exact/values.json").read_text(encoding="utf-8"))
     assert f"exact values ({len(exact)} kinds of scenes)" in changes
-    programs = {name.removesuffix("_xyz") for name in re.findall(r"^def with_(\w+)", pages["tools.md"], re.M)}
-    assert f"recipes for {WORDS[len(programs)]} programs" in changes

@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-from html import unescape
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -13,7 +12,7 @@ from site_pages import CHROMIUM, found_on
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.cli import commands, lines
+from gaspart.cli import commands
 from gaspart.cli.new import templates
 from gaspart.reproduction.registry import families
 
@@ -80,12 +79,6 @@ def test_links_lead_somewhere(site):
     assert count > 1000
 
 
-def test_classes_are_linked_where_signatures_and_docstrings_name_them(site):
-    text = (site / "generated/api/simulations.html").read_text(encoding="utf-8")
-    assert 'href="scenes.html#gaspart.Scene"' in text
-    assert 'href="scenes.html#gaspart.Particle"' in text
-
-
 @needs_chromium
 @pytest.mark.parametrize("width", [1400, 390])
 def test_nothing_is_wider_than_its_column(site, width):
@@ -97,38 +90,3 @@ def test_nothing_is_wider_than_its_column(site, width):
     wide.unlink()
     assert found.pop("wide.html") == "the page"  # what is too wide is noticed
     assert len(found) > 50 and not any(found.values()), found
-
-
-@needs_chromium
-def test_the_search_finds_pages_without_a_server(site):
-    wanted = {"restitution": "scenes", "obstacle": "scenes", "sweep": "quickstart", "units": "conventions"}
-    script = 'return [...document.querySelectorAll("#search-results li a")].map(a => a.getAttribute("href"))'
-    found = found_on([f"search.html?q={word}" for word in wanted], script, site, 1400, 3000)
-    for word, page in wanted.items():
-        addresses = found[f"search.html?q={word}"]
-        assert any(address.partition("#")[0] == f"{page}.html" for address in addresses), (word, addresses)
-
-
-def test_the_index_has_every_figure_with_its_finding(site):
-    text = plain(site / "generated/figures/index.html")
-    for figure in families():
-        caption = (ROOT / f"workflow/report/{figure}.rst").read_text(encoding="utf-8")
-        beginning = " ".join(re.split(r"[*`{\\:\[]", caption.removeprefix("**"))[0].split())
-        assert f"{figure} {beginning}" in text, figure
-
-
-def test_the_index_has_every_public_name_and_command_with_its_line(site):
-    text = plain(site / "generated/api/index.html")
-    for name in (*gp.__all__, *(f"theory.{name}" for name in theory.__all__)):
-        assert name in ("__version__", "analysis", "theory") or f" {name} " in text, name
-    for function in (gp.analysis.rdf, gp.analysis.velocity_autocorrelation):
-        summary = function.__doc__.splitlines()[0]
-        assert f" analysis.{function.__name__} {summary}" in text
-    for name, line in lines().items():
-        assert f" gaspart {name} {line[0].upper()}{line[1:]}." in text
-
-
-def plain(page):
-    """The text of a page, without places for breaks, and with plain quotation marks."""
-    text = unescape(re.sub("<[^>]+>", " ", page.read_text(encoding="utf-8")))
-    return " ".join(text.replace("\u200b", "").replace("’", "'").split())

@@ -83,21 +83,6 @@ def test_one_dimensional_velocities_of_source_a_are_those_of_v1_and_v2():
     assert (w1, w2) == ((2.0 * (1.0 - 3.0) + 2.0 * 3.0 * -1.0) / 4.0, (-1.0 * (3.0 - 1.0) + 2.0 * 2.0) / 4.0)
 
 
-def test_the_speeds_of_equation_52_of_source_c_are_normalised_only_with_v_squared():
-    beta, mass = 2.0, 3.0
-    v = np.linspace(0.0, 10.0, 200_001)
-    right, printed = (beta * mass * v * np.exp(-beta * x**2 / (2.0 * mass)) for x in (mass * v, v))
-    assert np.trapezoid(right, v) == pytest.approx(1.0, abs=1e-8)
-    assert np.trapezoid(printed, v) == pytest.approx(mass**2, rel=1e-3)
-
-
-def test_the_partition_function_of_discs_has_no_unit_with_two_powers_of_h_only():
-    # each disc contributes V 2 pi m kT/h^2; in the units of action a, lengths l and momenta p = a/l
-    length, momentum = 3.0, 5.0  # units changed by these factors, hence h by their product
-    ratio = {power: (length**2) * (momentum**2) / (length * momentum) ** power for power in (2, 3)}
-    assert ratio[2] == 1.0 and ratio[3] != 1.0
-
-
 @pytest.mark.thorough
 def test_slowly_growing_spheres_pass_63_per_cent_and_end_at_the_densest_packing():
     side = (108 * pi / 6.0 / 0.6) ** (1.0 / 3.0)
@@ -107,20 +92,6 @@ def test_slowly_growing_spheres_pass_63_per_cent_and_end_at_the_densest_packing(
     )
     packing = compress(scene, (2,), GROWTH / 32.0, until="jammed")
     assert packing.packing_fraction == pytest.approx(pi / sqrt(18.0), abs=1e-5)  # [Hales 2005]
-
-
-def test_two_shells_of_half_boxes_hold_every_partner_at_the_cost_that_the_page_states():
-    rng = np.random.default_rng(5)
-    places = rng.uniform(0.0, 8.0, (400, 3))  # in units of the diameter
-    boxes = np.floor(places / 0.5).astype(int)
-    apart = np.linalg.norm(places[:, None] - places, axis=-1)
-    shells = np.abs(boxes[:, None] - boxes).max(axis=-1)
-    near = (apart < 1.0) & ~np.eye(len(places), dtype=bool)
-    assert near.any() and shells[near].max() == 2
-    density = 0.0419 * 6.0 / pi  # per cubic diameter, in source A's densest gas
-    searched = {width: (1 + shell) for width, shell in ((1.0, 13), (0.5, 62))}
-    tests = {1.0: 27 / 2 * density, 0.5: 125 / 2 * 0.5**3 * density}
-    assert searched == {1.0: 14, 0.5: 63} and tests[1.0] - tests[0.5] == pytest.approx(0.45, abs=0.05)
 
 
 @pytest.mark.parametrize("restitution", [-0.5, 0.5, 1.0])

@@ -27,7 +27,6 @@ species:
 - {count: 200, radius: 0.5, temperature: 1.0}
 """
 CONFIGS = Path(__file__).parents[2] / "config"
-COMMANDS = ("run", "resume", "info", "render", "collisions", "export", "theory", "check", "advise")
 BRIEFLY = ["--duration", "1", "--sample-interval", "0.5"]
 
 
@@ -85,69 +84,6 @@ def test_resume_and_info_of_an_unfinished_run(folder, capsys):
     assert "already complete" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("scene", "options", "complaint"),
-    [
-        pytest.param(
-            GAS.replace("temperature", "temprature"), [], "temprature.*unknown key", id="unknown key"
-        ),
-        pytest.param(GAS.replace("temp", "mass: -1.0, temp"), [], "mass = -1.0: must be positive", id="mass"),
-        pytest.param(GAS.replace("0.5", ".nan"), [], "radius = nan: must be positive", id="NaN"),
-        pytest.param(
-            "container: {lengths: [9, 9]}\nparticles:\n"
-            "- {position: [3, 3], velocity: [0, 0], radius: 1}\n"
-            "- {position: [4, 3], velocity: [0, 0], radius: 1}\n",
-            [],
-            r"particles\[1\]\.position = .*: overlaps particles\[0\]",
-            id="overlapping particles",
-        ),
-        pytest.param(
-            GAS.replace("0.5", "7.0"),
-            [],
-            "radius = 7.0: is too large for the container",
-            id="particle too large",
-        ),
-        pytest.param(
-            GAS, ["--boxes-per-side", "13"], "boxes_per_side = 13: boxes must not", id="narrow boxes"
-        ),
-        pytest.param(GAS.replace("20", "110"), [], "count = 110: does not fit by random", id="saturation"),
-        pytest.param(
-            "container: {lengths: [9, 9]}\n", [], "a run needs at least one particle", id="no particles"
-        ),
-        pytest.param("", [], "scene = None: must be a mapping", id="empty file"),
-        pytest.param("a: [1\n", [], "line 2, column 1 = 'the end': is not valid YAML", id="not YAML"),
-        pytest.param(b"\xff\xfe\x00", [], "cannot be read", id="not text"),
-        pytest.param(None, [], "cannot be read: .*No such file", id="no file"),
-        pytest.param(GAS, ["--engine", "magic"], "--engine: 'magic': must be one of", id="engine"),
-        pytest.param(GAS, ["--engine", "step"], "--time-step: is required", id="no time step"),
-        pytest.param(
-            GAS,
-            ["--time-step", "0.1"],
-            "--time-step: 0.1: has no meaning with --engine event",
-            id="wrong engine",
-        ),
-        pytest.param(GAS, ["--sample-interval", "0.3"], "must be a whole multiple of sample", id="interval"),
-        pytest.param(GAS, ["--duration", "soon"], "argument --duration: invalid float", id="duration"),
-        pytest.param(GAS, ["--seed", "1,x"], "argument --seed: '1,x' must be a whole number", id="seed"),
-        pytest.param(GAS, ["--sed", "1"], "--sed: unknown option; did you mean --seed", id="unknown option"),
-        pytest.param(GAS, ["-o", "nowhere/run.nc"], "must be a file in an existing folder", id="output"),
-    ],
-)
-def test_a_mistake_costs_one_line(tmp_path, monkeypatch, capsys, scene, options, complaint):
-    monkeypatch.chdir(tmp_path)
-    path = tmp_path / "scene.yaml"
-    if scene is not None:
-        path.write_bytes(scene if isinstance(scene, bytes) else scene.encode())
-    try:
-        code = main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY, *options])
-    except SystemExit as end:  # of the reader of options
-        code = end.code
-    printed = capsys.readouterr()
-    assert (code, printed.out) == (2, "")
-    assert re.fullmatch(rf"gaspart: error: .*{complaint}.*\n", printed.err), printed.err
-    assert {file.name for file in tmp_path.iterdir()} <= {"scene.yaml"}
-
-
 def test_collisions_become_a_data_set(folder, capsys):
     assert main(["collisions", "scene.yaml", "-o", "met.nc", "--count", "100", "--seed", "4"]) == 0
     assert "collisions, mean free path" in capsys.readouterr().out
@@ -157,14 +93,8 @@ def test_collisions_become_a_data_set(folder, capsys):
     assert main(["collisions", "scene.yaml", "-o", "nowhere/met.nc", "--count", "5"]) == 2
 
 
-def test_no_command_is_a_mistake_and_help_is_not(tmp_path, capsys):
+def test_no_command_is_a_mistake_and_the_version_is_printed(tmp_path):
     assert shell(folder=tmp_path).returncode == 2
-    for command in ([], *([name] for name in COMMANDS)):
-        with pytest.raises(SystemExit) as leaving:
-            main([*command, "--help"])
-        output = capsys.readouterr().out
-        assert leaving.value.code == 0 and "usage: gaspart" in output
-        assert "example" in output or command in ([], ["resume"])
     assert shell("--version", folder=tmp_path).stdout == f"gaspart {gp.__version__}\n"
 
 
@@ -219,22 +149,11 @@ def test_waiting_is_shown_on_a_terminal_after_a_while(monkeypatch):
     assert progress.picture_progress() is None and sys.stderr.getvalue() == ""
 
 
-def test_pictures_are_counted(monkeypatch):
-    terminal = io.StringIO()
-    terminal.isatty = lambda: True
-    monkeypatch.setattr(sys, "stderr", terminal)
-    clock = iter([100.0, 101.0, 110.0])
-    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
-    show = progress.picture_progress()
-    show(1, 40)
-    show(10, 40)
-    assert terminal.getvalue() == "\r\033[Kpicture 10 of 40  0:00:30 left"
-
-
 def throw(error):
     raise error
 
 
+@pytest.mark.filterwarnings("error")
 def test_theory(capsys):
     assert main(["theory", "Z", "--eta", "0.3"]) == 0
     output = capsys.readouterr().out
@@ -250,17 +169,15 @@ def test_theory(capsys):
 
     for name in ("contact_value", "mean_free_path", "diffusion_coefficient", "viscosity"):
         assert main(["theory", name, "--eta", "0.1", "--dimension", "2"]) == 0
+        assert main(["theory", name, "--eta", "1e308"]) == 2
 
     capsys.readouterr()
     for wrong, complaint in (
         (["Z", "--eta", "0.9", "--dimension", "3"], "holds from 0 to"),
         (["Z", "--eta", "nan"], "'nan' must be a finite number and at least 0"),
-        (["collision_rate", "--eta", "0.1", "--mass", "0"], "'0' must be a finite number and above 0"),
         (["collision_rate", "--eta", "0.1", "--diameter=-1"], "'-1' must be a finite number and above 0"),
-        (["viscosity", "--eta", "0.1", "--temperature=nan"], "'nan' must be a finite number"),
         (["viscosity", "--eta", "0.1", "--diameter", "1e308"], "diameter = 1e+308: must be from 1e-30 to"),
         (["Z", "--eta", "0.1", "--dimension", "4"], "--dimension: 4: unknown name; known are 2, 3"),
-        (["Y", "--eta", "0.1", "--dimension", "3"], "'Y': unknown name; known are Z"),
         (["Z", "--eta", "0.1", "--dimension", "3", "--mass", "2"], "mass = 2.0: Z does not depend on it"),
     ):
         assert main(["theory", *wrong]) == 2
@@ -282,7 +199,6 @@ def test_check_reports_failed_checks_by_its_exit_code(folder, capsys):
     assert "WRONG momentum" in capsys.readouterr().out
     for wrong, complaint in (
         (["scene.yaml", "--radius", "1"], "radius = 1.0: has a meaning for trajectories only"),
-        (["nowhere.gsd"], "cannot be read: No such file"),
         (["run.pdb"], "must end in .yaml, .nc, .gsd, .xyz"),
     ):
         assert main(["check", *wrong]) == 2
@@ -298,17 +214,6 @@ def test_check_of_a_config_is_that_of_the_workflow(folder, capsys):
     assert "alone.yaml: title = None: is required" in capsys.readouterr().err
 
 
-@pytest.mark.interpreted
-def test_export_prints_the_path(folder, capsys):
-    assert main(["run", "scene.yaml", "-o", "run.nc", *BRIEFLY]) == 0
-    capsys.readouterr()
-    assert main(["export", "run.nc", "-o", "state.gsd"]) == 0
-    assert capsys.readouterr().out == "state.gsd\n"
-    assert main(["export", "run.nc", "-o", "state.pdb"]) == 2
-    assert main(["export", "run.nc", "-o", "state.gsd", "--frame", "3"]) == 2
-    assert "frame = 3: must be one of 3 frames" in capsys.readouterr().err
-
-
 def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     (folder / "gas.yaml").write_text(PERIODIC)
     assert main(["advise", "gas.yaml", "--observable", "Z", "--accuracy", "0.01", "--budget", "60s"]) == 0
@@ -318,17 +223,8 @@ def test_advice_names_engine_length_cost_and_reason(folder, capsys):
     (folder / "empty.yaml").write_text(PERIODIC.replace("200", "0"))
     for wrong, complaint in (
         (["gas.yaml", "--accuracy", "2"], "accuracy = 2"),
-        (["gas.yaml", "--accuracy", "1e-300"], "accuracy = 1e-300: must be from 1e-08 to 1"),
-        (["gas.yaml", "--budget", "nan"], "argument --budget: 'nan' must be a finite number and above 0"),
         (["empty.yaml"], "count = 0: advice is for a gas: the scene is empty"),
-        ([], "give a scene or --config"),
     ):
         assert main(["advise", *wrong]) == 2
         output = capsys.readouterr().err
         assert complaint in output and output.count("\n") == 1
-
-
-def test_the_cost_of_a_config(capsys, monkeypatch):
-    monkeypatch.setattr("gaspart.reproduction.cost._speed", lambda gas, engine, precision: 1.0)
-    assert main(["advise", "--config", str(CONFIGS / "smoke.yaml")]) == 0
-    assert "core-hours" in capsys.readouterr().out

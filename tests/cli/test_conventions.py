@@ -32,25 +32,18 @@ FREUD = "g(r) of freud is smaller by (N - 1) / N"
 VELO = "velocities are the property velo in ASE and chemfiles"
 LINES = {
     ("periodic", ".nc"): [],
-    ("walls", ".nc"): ["walls across x, y, z are read as periodic"],
     ("discs", ".nc"): ["walls across y are read as periodic", SLAB],
-    ("open", ".nc"): [
-        "walls across x are read as periodic",
-        "rows of NaN are numbers that no particle has",
-    ],
+    ("open", ".nc"): ["walls across x are read as periodic", "rows of NaN are numbers that no particle has"],
     ("piston", ".nc"): [
         "walls across x are read as periodic",
         "positions are in the cell after subtraction of cell_origin",
     ],
-    ("periodic", ".gsd"): [FREUD],
     ("discs", ".gsd"): ["walls across y are read as periodic", FREUD],
     ("periodic", ".xyz"): [VELO],
-    ("walls", ".xyz"): [VELO, "chemfiles has no pbc"],
     ("discs", ".xyz"): [VELO, "chemfiles has no pbc", SLAB],
     ("periodic", ".data"): ["LAMMPS needs boundary p p p"],
     ("walls", ".data"): ["LAMMPS needs boundary f f f", "its temp is larger by N / (N - 1)"],
     ("discs", ".data"): ["LAMMPS needs boundary p f p, dimension 2"],
-    ("piston", ".data"): ["LAMMPS needs boundary f p p"],
 }
 
 

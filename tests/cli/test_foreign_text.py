@@ -17,21 +17,19 @@ from gaspart.interruption import describe_interruption, set_note
 from gaspart.trajectory.opening import checkpoint_path
 
 NASTY = [
-    *("\x1b[2J\x1b[H", "\x1b]0;title\x07", "\x9b2J", "\r", "\n", "\x0b", "\x0c", "\x08" * 20, "\x7f", "\x00"),
-    *(
-        "\u202e",
-        "\u2066",
-        "\u200f",
-        "\u061c",
-        "\u2028",
-        "\u2029",
-        "\x85",
-        "\ufeff",
-        "\u200b",
-        "\udc9b",
-        "\U000e0041",
-    ),
+    "\x1b[2J\x1b[H",
+    "\x1b]0;title\x07",
+    "\x9b2J",
+    "\r",
+    "\n",
+    "\x0b",
+    "\x0c",
+    "\x08" * 20,
+    "\x7f",
+    "\x00",
 ]
+NASTY += ["\u202e", "\u2066", "\u200f", "\u061c", "\u2028", "\u2029", "\x85", "\ufeff", "\u200b", "\udc9b"]
+NASTY += ["\U000e0041", "\x00"]
 FAKE = "".join(NASTY) + "\nok    overlaps: none\x1b[1A\x1b[8m"
 SCENE = gas(2, 10, 0.1)
 
@@ -212,16 +210,8 @@ def test_a_failure_and_an_interruption_name_files_as_text(tmp_path, monkeypatch)
     monkeypatch.setattr("sys.stderr", said := io.StringIO())
     SCENE.to_file(tmp_path / "scene.yaml")
     path = tmp_path / "\x1b[2J.nc"
-    command = [
-        "run",
-        str(tmp_path / "scene.yaml"),
-        "-o",
-        str(path),
-        "--duration",
-        "1",
-        "--sample-interval",
-        "0.5",
-    ]
+    command = ["run", str(tmp_path / "scene.yaml"), "-o", str(path), "--duration", "1"]
+    command += ["--sample-interval", "0.5"]
     assert main([*command, "--quiet"]) == 1
     assert said.getvalue()[:-1].isprintable()
     assert not checkpoint_path(path).exists()

@@ -44,12 +44,6 @@ def test_a_run_of_the_first_template(tmp_path, monkeypatch, capsys):
         assert run.sizes["frame"] == 11
 
 
-def test_the_list_has_every_template(capsys):
-    assert main(["new", "--list"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == list(templates())
-
-
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [

@@ -11,7 +11,7 @@ from gaspart import theory
 from gaspart.inspection.checks import judge
 from gaspart.inspection.frames import Frames
 from gaspart.inspection.readers import read_frames
-from gaspart.inspection.statistics import contact_values, diffusion
+from gaspart.inspection.statistics import diffusion
 
 RUNS = {"spheres": (3, 0.3), "discs": (2, 0.3), "dense": (3, 0.45)}
 
@@ -93,14 +93,6 @@ def test_wrong_speeds(runs):
 def test_wrong_times(runs):
     good = runs["spheres"]
     assert verdicts(replace(good, time=2.0 * good.time))["diffusion coefficient D"] is False
-
-
-def test_ideal_points_have_no_order_at_contact():
-    rng = np.random.default_rng(2)
-    side = np.full(3, 10.0)
-    points = Frames(rng.random((40, 400, 3)) * side, side, np.full(400, 0.5), (True,) * 3)
-    values = contact_values(points)
-    assert abs(values.mean() - 1.0) < 4.0 * values.std() / np.sqrt(len(values))
 
 
 def test_diffusion_of_a_random_walk_is_known():

@@ -5,9 +5,6 @@ the same when it is read. `docs/files.md` has the fields of each format; those r
 `test_refused_fields.py`.
 """
 
-import re
-from pathlib import Path
-
 import netCDF4
 import numpy as np
 import pytest
@@ -26,7 +23,6 @@ from inspection.foreign import (
 )
 
 import gaspart as gp
-from gaspart.inspection import xyz_contents
 from gaspart.inspection.checks import judge_places
 from gaspart.inspection.readers import read_frames
 
@@ -245,30 +241,3 @@ def test_a_restart_file_is_a_frame(tmp_path):
         file.createVariable("time", "f8", ())[...] = 3.0
     frames = read_frames(tmp_path / "a.nc", 0.5)
     assert list(frames.time) == [3.0] and len(frames.positions) == 1 and list(frames.lengths) == [8.0] * 3
-
-
-AMBER = """
-    Conventions ConventionVersion title application program programVersion spatial cell_spatial cell_angular
-    time coordinates velocities forces cell_lengths cell_angles scale_factor units temp0 remd_indices
-    remd_repidx remd_crdidx remd_values unwrapped_coordinates scaled_coordinates cell_origin radius diameter
-    mass id type q
-"""
-"""Of AMBER's convention, and of LAMMPS in addition."""
-
-
-def test_every_field_of_the_specifications_is_in_the_documentation():
-    hoomd = pytest.importorskip("gsd.hoomd")
-    text = (Path(__file__).parents[2] / "docs/files.md").read_text(encoding="utf-8")
-    sections = text.partition("\n## Files of other programs\n")[2].split("\n### ")[1:]
-    named = [set(re.findall(r"`([^`]+)`", section)) for section in sections]
-    frame = hoomd.Frame()
-    schema = {f"configuration/{name}" for name in frame.configuration._default_value}
-    schema |= {f"particles/{name}" for name in frame.particles._default_value}
-    schema |= {"bonds", "angles", "dihedrals", "impropers", "constraints", "pairs", "log"}
-    columns = {name for names in xyz_contents._NAMES.values() for name in names} - {"z"} | {"Z"}
-    columns |= {"Lattice", "Properties", "pbc", "Origin", "Time"}
-    for fields, found in zip((set(AMBER.split()), schema, columns), named, strict=True):
-        assert fields <= found, fields - found
-    rows = [line for section in sections for line in section.splitlines() if line.startswith("| ")]
-    words = ("used", "rejected", "not elastic", "no effect")
-    assert not [row for row in rows if not any(word in row for word in (*words, "field", "---"))]

@@ -10,7 +10,7 @@ import gaspart as gp
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
 
-EVENT, STEP = gp.EventDriven(), gp.TimeStepped(time_step=0.002)
+EVENT = gp.EventDriven()
 
 
 def speeds(dimension, count, eta, boundary="periodic", **settings):

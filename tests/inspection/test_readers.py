@@ -2,103 +2,15 @@
 
 import tracemalloc
 
-import netCDF4
 import numpy as np
 import pytest
+from inspection.foreign import ROWS, gas_of, write_gsd, xyz
 from scenes import gas
 
 import gaspart as gp
 from gaspart.cli import main
 from gaspart.inspection.checks import judge
 from gaspart.inspection.readers import read_frames
-
-SIDES = np.array([6.0, 7.0, 8.0])
-RNG = np.random.default_rng(5)
-PLACES = RNG.random((3, 10, 3)) * SIDES
-VELOCITIES = RNG.standard_normal((3, 10, 3))
-
-
-def lammps(path, origin=(0.0, 0.0, 0.0), sides=SIDES, **attributes):
-    """As `dump netcdf` of LAMMPS writes: AMBER's convention with an origin, in single precision."""
-    with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
-        file.setncatts({"Conventions": "AMBER", "ConventionVersion": "1.0", "program": "LAMMPS"})
-        for name, size in (("frame", None), ("atom", 10), ("spatial", 3), ("cell_spatial", 3)):
-            file.createDimension(name, size)
-        file.createVariable("time", "f8", ("frame",))[:] = [0.0, 0.5, 1.0]
-        for name, values in (("cell_origin", origin), ("cell_lengths", sides)):
-            file.createVariable(name, "f8", ("frame", "cell_spatial"))[:] = np.broadcast_to(values, (3, 3))
-        for name, values in (("coordinates", PLACES + origin), ("velocities", VELOCITIES)):
-            variable = file.createVariable(name, "f4", ("frame", "atom", "spatial"))
-            variable.setncatts(attributes)
-            variable.set_auto_scale(False)
-            variable[:] = values
-    return path
-
-
-def gsd_file(path, flat=False):
-    import gsd.hoomd
-
-    with gsd.hoomd.open(str(path), "w") as file:
-        for n in range(3):
-            frame = gsd.hoomd.Frame()
-            frame.configuration.step = 100 * n
-            frame.configuration.dimensions = 2 if flat else 3
-            frame.configuration.box = [*(SIDES * [1, 1, not flat]), 0, 0, 0]
-            frame.particles.N = 10
-            frame.particles.position = (PLACES[n] - 0.5 * SIDES) * [1, 1, not flat]
-            frame.particles.velocity = VELOCITIES[n]
-            frame.particles.diameter = np.full(10, 0.25)
-            file.append(frame)
-    return path
-
-
-def xyz(path, extended=True):
-    lines = []
-    for n in range(3):
-        comment = "made by hand"
-        if extended:
-            comment = f'Lattice="6 0 0 0 7 0 0 0 8" Properties=species:S:1:pos:R:3:velo:R:3 Time={0.5 * n}'
-        lines += ["10", comment]
-        for place, velocity in zip(PLACES[n], VELOCITIES[n], strict=True):
-            lines.append("A " + " ".join(f"{x:.7f}" for x in (*place, *velocity)))
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
-def same(frames, velocities=True):
-    assert np.allclose(frames.positions, PLACES, atol=1e-6)
-    assert np.allclose(frames.lengths, SIDES)
-    if velocities:
-        assert np.allclose(frames.velocities, VELOCITIES, atol=1e-6)
-    return True
-
-
-def test_lammps_with_an_origin_elsewhere(tmp_path):
-    frames = read_frames(lammps(tmp_path / "dump.nc", origin=(-3.0, 2.0, 10.0)), radius=0.1)
-    assert same(frames) and frames.periodic == (True, True, True) and frames.diameter == 0.2
-    assert list(frames.time) == [0.0, 0.5, 1.0]
-    assert 0.0 < frames.resolution < 1e-5
-
-
-def test_amber_scales_its_velocities(tmp_path):
-    frames = read_frames(lammps(tmp_path / "a.nc", scale_factor=np.float32(2.0)), radius=0.1)
-    assert np.allclose(frames.velocities, 2.0 * VELOCITIES, atol=1e-5)
-
-
-def test_gsd_counts_steps_about_the_middle_of_its_box(tmp_path):
-    frames = read_frames(gsd_file(tmp_path / "dump.gsd"), time_step=0.005)
-    assert same(frames) and frames.diameter == 0.25 and list(frames.time) == [0.0, 0.5, 1.0]
-    assert read_frames(tmp_path / "dump.gsd").time is None
-    discs = read_frames(gsd_file(tmp_path / "flat.gsd", flat=True))
-    assert discs.dimension == 2 and np.allclose(discs.positions, PLACES[:, :, :2], atol=1e-6)
-
-
-def test_xyz_extended_and_plain(tmp_path):
-    frames = read_frames(xyz(tmp_path / "a.xyz"), radius=0.1)
-    assert same(frames) and list(frames.time) == [0.0, 0.5, 1.0] and frames.resolution == 1e-7
-    plain = read_frames(xyz(tmp_path / "b.xyz", False), 0.1, (6.0, 7.0, 8.0), "wall", time_step=0.5)
-    assert same(plain, velocities=False) and plain.velocities is None and not any(plain.periodic)
-    assert list(plain.time) == [0.0, 0.5, 1.0]
 
 
 def test_two_spheres_at_one_place_are_found_in_an_xyz_file(tmp_path, capsys):
@@ -114,19 +26,22 @@ def test_a_trajectory_of_gaspart_states_the_forces_on_its_particles(tmp_path):
     assert frames.plain and frames.dimension == 2 and not any(frames.periodic)
 
 
+def cut_gsd(path):
+    write_gsd(path, gas_of())
+    path.write_bytes(path.read_bytes()[:300])
+
+
 @pytest.mark.parametrize(
     ("name", "make", "complaint"),
     [
         ("a.nc", lambda path: path.write_bytes(b"CDF\x02 and so on"), "cannot be read"),
-        ("a.nc", lambda path: path.write_bytes(b""), "cannot be read"),
         ("a.gsd", lambda path: path.write_bytes(b"no such format" * 40), "cannot be read"),
-        ("a.gsd", lambda path: path.write_bytes(gsd_file(path).read_bytes()[:300]), "cannot be read"),
+        ("a.gsd", cut_gsd, "cannot be read"),
         ("a.xyz", lambda path: path.write_text("three\n"), "cannot be read: invalid literal"),
         ("a.xyz", lambda path: path.write_text("3\n\nA 1 1 1\n"), "is truncated: frame 0 has 1"),
         ("a.xyz", lambda path: path.write_bytes(b"\xff\xfe\x00\x01"), "cannot be read"),
-        ("a.xyz", lambda path: path.write_text(""), "cannot be read"),
-        ("a.xyz", lambda path: xyz(path, extended=False), "--lengths"),
-        ("a.xyz", xyz, "--radius"),
+        ("a.xyz", lambda path: path.write_text("1\n\nA 1 1 1\n"), "--lengths"),
+        ("a.xyz", lambda path: xyz(path, ROWS), "--radius"),
     ],
 )
 def test_unreadable_files_are_reported_in_one_line(tmp_path, name, make, complaint):

@@ -92,14 +92,6 @@ def netcdf_file(path, variables, **attributes):
 CUBE = f'Lattice="{SIDE} 0 0 0 {SIDE} 0 0 0 {SIDE}"'
 
 
-def test_all_that_is_right_is_ok(tmp_path, right):
-    places, velocities = right
-    found = without_wrong(
-        lines(gsd_file(tmp_path / "a.gsd", places - 4, velocities), radius=0.5, time_step=1e-3)
-    )
-    assert all(found[name].passed for name in ("energy", "momentum", "flights", "speed law"))
-
-
 def test_velocities_of_the_first_frame_only(tmp_path, right):
     places, velocities = right
     path = gsd_file(tmp_path / "a.gsd", places - 4, velocities, stored=(0,))

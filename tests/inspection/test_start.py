@@ -174,18 +174,6 @@ def test_coordinates_of_few_digits_that_overlap_are_refused(tmp_path):
     assert not list(tmp_path.glob("run.nc*"))
 
 
-def test_the_command_starts_from_a_file(tmp_path, state, capsys):
-    PLAIN.to_file(tmp_path / "gas.yaml")
-    path = write_xyz(tmp_path / "gas.xyz", state)
-    command = ["run", str(tmp_path / "gas.yaml"), "--duration", "1", "--sample-interval", "0.5", "--quiet"]
-    assert main([*command, "-o", str(tmp_path / "run.nc"), "--from", str(path)]) == 0
-    assert np.array_equal(read_recipe(tmp_path / "run.nc").initial.positions, state.positions)
-    capsys.readouterr()
-    path.write_text("1\n\nA 0 0 0\n", encoding="ascii")
-    assert main([*command, "-o", str(tmp_path / "other.nc"), "--from", str(path)]) == 2
-    assert "has 1 particles, and the scene 40" in capsys.readouterr().err
-
-
 def test_positions_and_radii_alone_are_a_start(tmp_path):
     """A plain file, in another order than the scene; velocities are those of the scene with this seed."""
     MIXED.to_file(tmp_path / "gas.yaml")

@@ -205,30 +205,19 @@ def test_the_command_line_makes_pictures_and_films(runs, capsys):
     ("options", "complaint"),
     [
         (["discs.nc", "-o", "a.jpg"], "output = 'a.jpg': must end in .png, .mp4, .gif"),
-        (["none.nc", "-o", "new.png"], "file = 'none.nc': cannot be read: No such file"),
         (["discs.nc", "-o", "new.png", "--frame", "5"], "frame = 5: must be one of 5 frames, counted from 0"),
         (["discs.nc", "-o", "new.gif", "--frame", "1"], "frame = 1: has no meaning for a film"),
-        (["discs.nc", "-o", "new.png", "--trail", "1"], "trail = 1: has no meaning for a picture"),
         (
             ["discs.nc", "-o", "new.gif", "--trail", "21"],
             "trail = 21: must be below 21, the number of particles",
         ),
         (["spheres.nc", "-o", "new.gif", "--trail", "0"], "trail = 0: requires discs"),
-        (["discs.nc", "-o", "new.png", "--camera", "0,90"], "camera = (0.0, 90.0): is for spheres"),
-        (["spheres.nc", "-o", "new.gif", "--camera", "0,91"], "camera = 91.0: an azimuth must be from"),
-        (["spheres.nc", "-o", "new.png", "--camera", "9"], "camera = (9.0,): must be an azimuth and an"),
         (["discs.nc", "-o", "new.png", "--size", "9"], "argument --size: '9' must be of the form 1000x750"),
-        (["discs.nc", "-o", "a.mp4", "--size", "9x9"], "size = 9: must be a whole number of at least 16"),
         (["discs.nc", "-o", "new.png", "--colour", "red"], "colour = 'red': must be one of speed, species"),
         (["discs.nc", "-o", "none/a.png"], "path = 'none/a.png': cannot be written: No such file"),
-        (["discs.nc", "-o", "none/a.mp4"], "path = 'none/a.mp4': cannot be written: No such file"),
         (
             ["discs.nc", "-o", "new.gif", "--frames-per-second", "1e-300"],
             "frames_per_second = 1e-300: must be from 0.01 to 1000",
-        ),
-        (
-            ["discs.nc", "-o", "new.gif", "--frames-per-second", "0"],
-            "argument --frames-per-second: '0' must be a finite number and above 0",
         ),
     ],
 )

@@ -44,20 +44,6 @@ def test_a_page_has_two_columns_of_panels_and_a_journal_one(tmp_path):
     assert (height, panels) == (5.5, [[a, b, c, d]])
 
 
-def test_the_parts_of_a_split_panel_take_its_place():
-    with style.use_style("journal"):
-        figure, (_, below) = style.new((1.0,), (2.0,))
-        parts = style.split(below, 2, 3)
-    assert parts.shape == (2, 3) and below not in figure.axes and len(figure.axes) == 7
-
-
-def test_letters_are_of_8_points_at_least():
-    sizes = [
-        value for key, value in style.RULES.items() if key.endswith(("font.size", "labelsize", "fontsize"))
-    ]
-    assert len(sizes) >= 4 and min(sizes) >= 8
-
-
 def test_numbers_of_a_short_logarithmic_axis_do_not_run_into_each_other(tmp_path):
     """3 to 40 and 1e-9 to 1: plain numbers on the one, powers of ten on the other, none of another kind."""
     with style.use_style():

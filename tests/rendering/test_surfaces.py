@@ -122,11 +122,6 @@ def test_images_that_slide_have_arrows_along_the_flow(rate, along):
     assert [surface.motion for surface in surfaces_of(stopped)] == [None, None]
 
 
-def test_a_vibrating_face_moves_to_and_fro():
-    (surface,) = surfaces_of(scene({"y_low": gp.Vibrating(amplitude=0.5, period=2.0)}))
-    assert surface.motion.tolist() == [0.0, 1.0] and surface.to_and_fro
-
-
 def test_arrows_have_heads_where_they_point():
     tail, head = np.array([0.0, 0.0]), np.array([8.0, 0.0])
     shaft, *barbs = arrow_lines(tail, head, two_heads=False)
@@ -162,12 +157,3 @@ def test_a_legend_names_each_surface_of_a_picture():
     narrow = Labels((170, 300), (), None, surfaces_of(scene(faces)))
     assert len(narrow.rows) > 1 and narrow.inner[1] < Labels((170, 300)).inner[1]
     assert not Labels((170, 40), (), None, surfaces_of(scene(faces))).rows  # they would leave too little
-
-
-def test_spheres_have_coloured_outlines():
-    container = gp.Container(lengths=(4.0, 4.0, 4.0))
-    species = [gp.Species(count=3, radius=0.3, temperature=1.0)]
-    hot = gp.Scene(container=container, species=species, faces={"x_low": gp.Thermal(temperature=1.0)})
-    before = gp.render(gp.Scene(container=container, species=species), size=(160, 120)).astype(int)
-    changed = np.abs(gp.render(hot, size=(160, 120)).astype(int) - before).sum(axis=2) > 60
-    assert 100 < changed.sum() < 2000

@@ -7,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.scene.faces import Open
-from gaspart.scene.surfaces import FACES, Thermal
+from gaspart.scene.surfaces import Thermal
 from gaspart.trajectory.reading import open_trajectory
 
 BOX = gp.Container((6.0, 8.0))
@@ -38,12 +38,6 @@ def test_a_changed_copy_has_facts_of_its_own():
     assert more.largest_radius == 0.5 and more.largest_moving_radius == 0.25
     round_ = replace(more, container=replace(BOX, boundary="periodic"), particles=())
     assert round_.conserved_axes == (True, True) and round_.is_periodic and round_.walled_axes == ()
-
-
-def test_a_face_is_known_by_either_name_before_and_after_its_facts():
-    scene = gp.Scene(BOX, [DISCS], faces={"x low": gp.Thermal(1.0), "y high": gp.Thermal(2.0)})
-    assert [FACES[n] for n in scene.thermal_numbers] == ["x_low", "y_high"]
-    assert scene.face_temperatures == {1.0, 2.0}
 
 
 @pytest.mark.parametrize(

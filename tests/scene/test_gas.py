@@ -62,14 +62,6 @@ def test_no_species_of_no_particles_and_no_rule_of_walls_changes_it():
             {"species": [gp.Species(9, 0.3, polydispersity=0.2)]},
             r"species.polydispersity = 0.2: .*without radii that differ",
         ),
-        (
-            {"species": [gp.Species(9, 0.3), gp.Species(9, 0.4)]},
-            "species = 2: .*their radii or masses differ",
-        ),
-        (
-            {"species": [gp.Species(9, 0.3)], "restitution": gp.Restitution(0.8)},
-            "restitution.normal = 0.8: .*without inelastic",
-        ),
         ({"species": []}, "count = 0: .*the scene is empty"),
     ],
 )

@@ -1,6 +1,5 @@
 """Scenes: invalid ones are refused in one line, and a file returns the scene that was written."""
 
-import dataclasses
 import math
 import time
 
@@ -33,28 +32,15 @@ def changed(path, value):
     ("path", "value", "key"),
     [
         (("colour",), "red", "colour"),
-        (("species", 0, "colour"), "red", "species[0].colour"),
         (("species", 0, "mass"), -1.0, "species[0].mass"),
-        (("species", 0, "mass"), 0.0, "species[0].mass"),
-        (("species", 0, "radius"), math.nan, "species[0].radius"),
         (("species", 0, "radius"), "big", "species[0].radius"),
-        (("species", 0, "radius"), 6.0, "species[0].radius"),
         (("species", 0, "count"), 2.5, "species[0].count"),
-        (("species", 0, "count"), -1, "species[0].count"),
-        (("species", 0, "count"), True, "species[0].count"),
         (("species", 0, "count"), 200, "packing_fraction"),
         (("species", 0, "temperature"), 1.0, "species[0].temperature"),
         (("species", 0, "arrangement"), "neat", "species[0].arrangement"),
-        (("species", 0, "region"), [1.0, 2.0], "species[0].region[0]"),
         (("species", 0, "region"), [[1.0, 1.0], [5.0]], "species[0].region[1]"),
-        (("species", 0, "region"), [[1.0, 1.0, 1.0], [5.0, 5.0, 5.0]], "species[0].region[0]"),
-        (("species", 0, "region"), [[1.0, 1.0], [5.0, 11.0]], "species[0].region"),
         (("species", 0, "region"), [[1.0, 1.0], [5.0, 1.9]], "species[0].region"),
-        (("container", "lengths"), [10.0], "container.lengths"),
-        (("container", "lengths"), [10.0, math.inf], "container.lengths"),
-        (("container", "lengths"), [10.0, -1.0], "container.lengths"),
         (("container", "boundary"), "fog", "container.boundary"),
-        (("container", "boundary"), ["wall"], "container.boundary"),
         (("centres_to_walls",), "yes", "centres_to_walls"),
         (("species",), {"count": 3}, "species"),
         (
@@ -62,12 +48,6 @@ def changed(path, value):
             [{"position": [0.1, 5], "velocity": [0, 0], "radius": 0.5}],
             "particles[0].position",
         ),
-        (
-            ("particles",),
-            [{"position": [5, 5, 5], "velocity": [0, 0], "radius": 0.5}],
-            "particles[0].position",
-        ),
-        (("particles",), [{"position": [5, 5], "velocity": [0, 0]}], "particles[0].radius"),
         (
             ("particles",),
             [{"position": [5, y], "velocity": [0, 0], "radius": 0.5} for y in (5, 5.5)],
@@ -81,12 +61,6 @@ def test_one_line_names_file_key_and_value(path, value, key):
     message = str(caught.value)
     assert message.startswith(f"scene.yaml: {key} = ")
     assert "\n" not in message
-
-
-def test_overlap_is_found_across_a_periodic_face():
-    particles = [gp.Particle((0.2, 5.0), (0, 0), 0.5), gp.Particle((9.8, 5.0), (0, 0), 0.5)]
-    with pytest.raises(gp.SceneError, match="overlaps"):
-        gp.Scene(gp.Container((10.0, 10.0), "periodic"), particles=particles)
 
 
 @given(st.data())
@@ -135,26 +109,6 @@ def test_a_file_returns_the_scene(tmp_path_factory, scene):
     assert gp.Scene.from_file(path) == scene
 
 
-def test_numbers_in_a_file_may_be_written_as_people_write_them(tmp_path):
-    path = tmp_path / "scene.yaml"
-    path.write_text("container: {lengths: [1e1, 10]}\nspecies: [{count: 1, radius: 5e-1, speed: 1}]\n")
-    assert gp.Scene.from_file(path).species[0].radius == 0.5
-
-
-@pytest.mark.parametrize("text", ["a: [", "!!python/object/apply:os.system ['true']", "- 1"])
-def test_a_file_that_is_no_scene(tmp_path, text):
-    path = tmp_path / "scene.yaml"
-    path.write_text(text)
-    with pytest.raises(gp.SceneError, match="scene.yaml") as caught:
-        gp.Scene.from_file(path)
-    assert "\n" not in str(caught.value)
-
-
-def test_a_file_that_is_not_there():
-    with pytest.raises(gp.SceneError, match="cannot be read"):
-        gp.Scene.from_file("no-such-scene.yaml")
-
-
 def test_derived_numbers():
     scene = gp.Scene.from_dict(GOOD)
     assert scene.count == 5
@@ -169,41 +123,6 @@ SHEARED = {"y_high": gp.LeesEdwards(1.0)}
 BALL = [gp.Species(1, 0.5, speed=1.0)]
 HOLED = {"x_low": gp.Well(1.0, 2.0), "x_high": gp.Well(1.0, 2.0)}
 
-
-@pytest.mark.parametrize(
-    ("make", "complaint"),
-    [
-        (lambda: gp.Scene(ROOM, walls=[gp.Wall((1.0, 1.0), (2.0, 2.0))]), "a Wall needs a container of two"),
-        (lambda: gp.Scene(FLAT, BALL, faces=HOLED), "faces.x_low.width = 2.0: leaves no room outside"),
-        (lambda: gp.Scene(FLAT, faces={"y_low": HOLED["x_low"]}, gravity=(0.0, -1.0)), "without gravity"),
-        (lambda: gp.Scene(FLAT, faces={"x_low": 3}), "must be Thermal, Well, .* or LeesEdwards"),
-        (lambda: gp.Scene(FLAT, faces=["x_low"]), "must be a mapping of faces"),
-        (lambda: gp.Scene(FLAT, restitution=0.9), "restitution = 0.9: must be a Restitution"),
-        (lambda: gp.Scene(FLAT, gravity=(0.0, -1.0, 0.0)), "must be a list of 2 finite numbers"),
-        (lambda: gp.Restitution(1.5), "normal = 1.5: must be from 0 to 1"),
-        (lambda: gp.Restitution(1.0, -1.5), "tangential = -1.5: must be from -1 to 1"),
-        (lambda: gp.Wall((1.0, 1.0), (1.0, 1.0)), "a wall must have a length"),
-        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1.0, 0.0, 0.0),)), "edges = .*: must be two lists of 3"),
-        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
-        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
-        (lambda: gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "must be zero for a fixed particle"),
-        (lambda: gp.Particle((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "requires fixed: true"),
-        (lambda: gp.Species(1, 1e70), "choose other units"),
-        (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
-        (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
-        (lambda: gp.TimeStepped(0.1, rewind=1), "rewind = 1: must be true or false"),
-        (lambda: gp.EventDriven("magic"), "search = 'magic': must be one of"),
-        (lambda: gp.EventDriven("pairs", boxes_per_side=3), 'needs search "boxes"'),
-        (lambda: thermal_face(gp.Scene(FLAT, faces={"x_low": gp.Sticky(1.0)}), "x_low"), "must be thermal"),
-        (lambda: thermal_face(gp.Scene(FLAT), "y_low"), "faces.y_low = None: must be thermal"),
-    ],
-)
-def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
-    with pytest.raises(gp.SceneError, match=complaint) as caught:
-        make()
-    assert "\n" not in str(caught.value)
-
-
 FAST, WALL = {"y_high": gp.LeesEdwards(1e60)}, gp.Wall((1.0, 1.0), (2.0, 2.0))
 FIXED, KICKS = gp.Species(1, 0.5, fixed=True), gp.Thermostat(1.0, 0.1)
 
@@ -211,51 +130,36 @@ FIXED, KICKS = gp.Species(1, 0.5, fixed=True), gp.Thermostat(1.0, 0.1)
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
+        (lambda: gp.Scene(ROOM, walls=[gp.Wall((1.0, 1.0), (2.0, 2.0))]), "a Wall needs a container of two"),
+        (lambda: gp.Scene(FLAT, BALL, faces=HOLED), "faces.x_low.width = 2.0: leaves no room outside"),
+        (lambda: gp.Scene(FLAT, faces={"y_low": HOLED["x_low"]}, gravity=(0.0, -1.0)), "without gravity"),
+        (lambda: gp.Scene(FLAT, restitution=0.9), "restitution = 0.9: must be a Restitution"),
+        (lambda: gp.Restitution(1.5), "normal = 1.5: must be from 0 to 1"),
+        (lambda: gp.Restitution(1.0, -1.5), "tangential = -1.5: must be from -1 to 1"),
+        (lambda: gp.Wall((1.0, 1.0), (1.0, 1.0)), "a wall must have a length"),
+        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (0, 0, 0))), "must have a length and a width"),
+        (lambda: gp.Plate((1.0, 1.0, 1.0), ((1, 0, 0), (1, 1, 0))), "must be at right angles"),
+        (lambda: gp.Particle((1.0, 1.0), (1.0, 0.0), 0.5, fixed=True), "must be zero for a fixed particle"),
+        (lambda: gp.Particle((1.0, 1.0), (0.0, 0.0), 0.5, vibration=1.0), "requires fixed: true"),
+        (lambda: gp.TimeStepped(0.1, skin=0.1, boxes_per_side=3), "skin = 0.1: excludes boxes_per_side"),
+        (lambda: gp.TimeStepped(0.1, near_boxes=True), "needs boxes_per_side"),
+        (lambda: gp.EventDriven("pairs", boxes_per_side=3), 'needs search "boxes"'),
+        (lambda: thermal_face(gp.Scene(FLAT), "y_low"), "faces.y_low = None: must be thermal"),
         (
             lambda: gp.Scene(AROUND, faces={"x_high": SHEARED["y_high"]}),
             "x_high = .*: must be stated for y_high",
         ),
-        (
-            lambda: gp.Scene(HALF, faces=SHEARED),
-            "y_high = .*: needs a container that is periodic",
-        ),
+        (lambda: gp.Scene(HALF, faces=SHEARED), "y_high = .*: needs a container that is periodic"),
         (lambda: gp.Scene(AROUND, faces=FAST), "faces.y_high.shear_rate = .*: must be 0 or of a size"),
-        (lambda: gp.LeesEdwards("fast"), "shear_rate = 'fast': must be a finite number"),
         (lambda: gp.Scene(AROUND, walls=[WALL], faces=SHEARED), "walls .*: the images of walls would slide"),
         (lambda: gp.Scene(AROUND, [FIXED], faces=SHEARED), "fixed .*: the images of fixed particles would"),
-        (
-            lambda: gp.Scene(AROUND, thermostat=KICKS, faces=SHEARED),
-            "thermostat .*: kicks need faces",
-        ),
+        (lambda: gp.Scene(AROUND, thermostat=KICKS, faces=SHEARED), "thermostat .*: kicks need faces"),
     ],
 )
-def test_what_cannot_be_sheared_is_refused_in_one_line(make, complaint):
+def test_a_mistake_in_python_is_refused_in_one_line_too(make, complaint):
     with pytest.raises(gp.SceneError, match=complaint) as caught:
         make()
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "kind",
-    [
-        gp.Scene,
-        gp.Container,
-        gp.Species,
-        gp.Particle,
-        gp.Restitution,
-        gp.Wall,
-        gp.Plate,
-        gp.Thermal,
-        gp.Well,
-        gp.Sticky,
-        gp.Vibrating,
-        gp.Piston,
-        gp.LeesEdwards,
-    ],
-)
-def test_every_field_of_a_scene_has_a_rule_and_a_meaning(kind):
-    for item in dataclasses.fields(kind):
-        assert item.metadata["kind"].keys() > {"description"}, item.name
 
 
 def test_the_mean_velocity_of_faces_is_that_of_all_that_drag():

@@ -99,10 +99,8 @@ def test_engines_run_it_or_refuse_it_in_one_line():
 @pytest.mark.parametrize(
     ("key", "properties"),
     [
-        ("polydispersity", {"polydispersity": -0.1}),
         ("polydispersity", {"polydispersity": 1.5}),
         ("polydispersity", {"polydispersity": 0.6, "radius_distribution": "uniform"}),
-        ("radius_distribution", {"radius_distribution": "gauss"}),
         ("radius_distribution", {"polydispersity": None, "radius_distribution": "uniform"}),
         ("moment_of_inertia", {"moment_of_inertia": 0.1}),
         (

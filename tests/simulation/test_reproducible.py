@@ -42,16 +42,6 @@ def small(boundary):
     return gas(3, 60, 0.2, boundary)
 
 
-@every_engine
-@pytest.mark.parametrize("boundary", ["periodic", "wall"])
-def test_twice_the_same_bytes(tmp_path, engine, boundary):
-    paths = [
-        gp.run(small(boundary), engine, 7, 4.0, 0.5, tmp_path / f"{name}.nc", displacements=True)
-        for name in "ab"
-    ]
-    assert paths[0].read_bytes() == paths[1].read_bytes()
-
-
 def test_the_same_bytes_in_another_process(tmp_path):
     here = gp.run(small("wall"), ENGINES["event"], (1, 2), 4.0, 0.5, tmp_path / "here.nc")
     scene, there = tmp_path / "scene.yaml", tmp_path / "there.nc"

@@ -101,13 +101,3 @@ def test_a_checkpoint_that_lacks_anything_is_refused(engine, tally):
         with pytest.raises(gp.SceneError, match="checkpoint"):
             sim.restore(wrong)
     assert bits(sim) == before
-
-
-def test_what_is_no_engine_is_refused():
-    for wrong in (1, gp.EventDriven):
-        with pytest.raises(
-            gp.SceneError, match=r"engine = .*must be an engine: EventDriven\(\), TimeStepped"
-        ):
-            gp.Simulation(DISCS, wrong)
-    with pytest.raises(gp.SceneError, match="scene = 'gas.yaml': must be a Scene"):
-        gp.Simulation("gas.yaml", gp.EventDriven())

@@ -1,9 +1,9 @@
 """The face of the library."""
 
 import math
-import os
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -29,21 +29,10 @@ def test_same_seed_same_bits_and_another_seed_another_gas():
 @pytest.mark.parametrize(
     ("target", "key"),
     [
-        ({"until": math.nan}, "until"),
-        ({"until": math.inf}, "until"),
-        ({"until": -1.0}, "until"),
-        ({"until": "1"}, "until"),
-        ({"until": True}, "until"),
-        ({"duration": math.nan}, "duration"),
-        ({"duration": math.inf}, "duration"),
-        ({"duration": -1.0}, "duration"),
-        ({"duration": "1"}, "duration"),
+        *(({"until": value}, "until") for value in (math.nan, math.inf, -1.0, "1", True)),
+        *(({"duration": value}, "duration") for value in (math.nan, math.inf, -1.0, "1")),
+        *(({"max_events": value}, "max_events") for value in (-1, 1.5, "7", True, math.nan)),
         ({"duration": 1e308, "until": math.nan}, "until"),
-        ({"max_events": -1}, "max_events"),
-        ({"max_events": 1.5}, "max_events"),
-        ({"max_events": "7"}, "max_events"),
-        ({"max_events": True}, "max_events"),
-        ({"max_events": math.nan}, "max_events"),
         ({}, "duration"),
     ],
 )
@@ -172,34 +161,6 @@ def test_particles_are_added_before_the_start_only():
         sim.add_random(1, radius=0.3)
 
 
-@pytest.mark.interpreted
-def test_a_notebook_shows_what_a_simulation_is():
-    simulation = gp.Simulation(gas(2, 20, 0.1), gp.EventDriven(), 1)
-    simulation.advance(duration=2.0)
-    expected = f"<Simulation of 20 discs, event engine: time 2, {simulation.tally.collisions} collisions>"
-    assert repr(simulation) == expected
-
-
-@pytest.mark.interpreted
-@pytest.mark.parametrize(
-    ("arguments", "key"),
-    [
-        ({}, "duration"),
-        ({"duration": -1.0}, "duration"),
-        ({"duration": float("nan")}, "duration"),
-        ({"until": -1.0}, "until"),
-        ({"max_events": -3}, "max_events"),
-        ({"max_events": 2.5}, "max_events"),
-        ({"duration": 1.0, "max_work": 0}, "max_work"),
-        ({"max_work": 1}, "duration"),
-    ],
-)
-def test_targets_that_are_not_numbers(arguments, key):
-    sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
-    with pytest.raises(gp.SceneError, match=key):
-        sim.advance(**arguments)
-
-
 @pytest.mark.parametrize("search", ["boxes", "pairs"])
 def test_work_is_bounded_where_nothing_but_crossings_happens(search):
     """Two discs that cross a thin periodic axis a million million times and never meet."""
@@ -220,7 +181,11 @@ def test_work_is_bounded_where_nothing_but_crossings_happens(search):
 
 
 @pytest.mark.interpreted
-def test_work_is_counted_by_the_event_driven_engine_only():
+def test_work_is_a_whole_number_and_counted_by_the_event_driven_engine_only():
+    sim = gp.Simulation(gas(2, 5, 0.1), gp.EventDriven(), seed=1)
+    for given, key in (({"duration": 1.0, "max_work": 0}, "max_work"), ({"max_work": 1}, "duration")):
+        with pytest.raises(gp.SceneError, match=key):
+            sim.advance(**given)
     sim = gp.Simulation(gas(2, 5, 0.1), gp.TimeStepped(0.01), seed=1)
     with pytest.raises(gp.SceneError, match="max_work"):
         sim.advance(duration=1.0, max_work=5)
@@ -247,20 +212,48 @@ def test_engines_can_be_serialised():
         gp.TimeStepped(0.1, 4, "float32"),
     ):
         assert gp.engine_from_dict(gp.engine_to_dict(engine)) == engine
-    for wrong, key in (
-        ({"name": "magic"}, "engine.name"),
-        ({"name": "step"}, "engine.time_step"),
-        ([], "engine"),
-    ):
-        with pytest.raises(gp.SceneError, match=key):
-            gp.engine_from_dict(wrong)
 
 
-def test_importing_the_package_starts_no_compiler():
-    names = "sys, gaspart, gaspart.reproduction.points.point"
-    code = f"import {names}; print('numba' in sys.modules, 'xarray' in sys.modules)"
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
-    )
-    assert done.stdout.split() == ["False", "False"]
+CONTAINER = gp.Container(lengths=(20.0, 20.0))
+
+
+def simulated(**scene):
+    species = scene.pop("species", [gp.Species(count=10, radius=0.5)])
+    return gp.Simulation(gp.Scene(container=CONTAINER, species=species, **scene), seed=1)
+
+
+@pytest.mark.interpreted
+def test_a_gas_at_rest_warns():
+    simulation = simulated()
+    with pytest.warns(UserWarning, match="give a species a temperature or a speed"):
+        simulation.advance(0.5)
+    assert simulation.tally.collisions == simulation.tally.wall_hits.sum() == 0
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize(
+    "scene",
+    [
+        {"species": [gp.Species(count=10, radius=0.5, speed=1.0)]},
+        {"gravity": (0.0, -1.0)},
+        {"thermostat": gp.Thermostat(power=1.0, interval=0.1)},
+        {"faces": {"x_low": gp.Piston(speed=0.1)}},
+        {"species": [gp.Species(count=10, radius=0.5, fixed=True)]},
+    ],
+    ids=["speed", "gravity", "thermostat", "piston", "fixed"],
+)
+def test_a_gas_that_something_moves_does_not(scene):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        simulated(**scene)._warn_at_rest()  # without the kernels of each scene
+
+
+def test_the_command_line_warns_in_one_line(tmp_path):
+    scene = tmp_path / "rest.yaml"
+    scene.write_text("container: {lengths: [20.0, 20.0]}\nspecies: [{count: 10, radius: 0.5}]\n")
+    words = ["run", str(scene), "-o", str(tmp_path / "rest.nc"), "--duration", "1", "--sample-interval", "1"]
+    command = [sys.executable, "-m", "gaspart", *words]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0
+    assert done.stderr.count("warning: all particles are at rest") == 1
+    assert "simulation.advance" not in done.stderr

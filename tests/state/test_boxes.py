@@ -52,12 +52,6 @@ def test_boxes_narrower_than_a_diameter_are_refused():
     make_boxes(scene, 1, images=True)
 
 
-@pytest.mark.parametrize("wrong", [0, -1, 2.5, (2,), "many"])
-def test_invalid_numbers_of_boxes(wrong):
-    with pytest.raises(gp.SceneError, match="boxes_per_side"):
-        make_boxes(gas(2, 10, 0.1), wrong, images=True)
-
-
 def test_the_number_of_boxes_follows_the_number_of_particles():
     assert np.prod(sides_for(gas(3, 1000, 0.01))) == 1000
     dense = gas(3, 1000, 0.6)

@@ -107,13 +107,6 @@ def test_insertion_is_that_of_one_attempt_after_another(dimension, eta, boundary
                     break
 
 
-def test_insertion_gives_up_at_saturation():
-    scene = gas(3, 200, 0.5)
-    with pytest.raises(gp.SceneError, match=r"species\[0\].count = 200: does not fit") as caught:
-        random_insertion(scene, stream(0), patience=20_000)
-    assert "\n" not in str(caught.value)
-
-
 def test_failures_at_low_density_are_those_of_the_excluded_volume():
     # the chance that an attempt fails is 2^d eta to first order; here eta grows from 0 to 0.01
     failures = 0
@@ -144,15 +137,6 @@ def test_explicit_particles_come_first_and_keep_their_positions():
     assert closest(scene, state) >= 0
 
 
-def test_large_particles_fit_among_small_ones():
-    scene = gp.Scene(
-        gp.Container((12.0, 12.0)), [gp.Species(150, 0.25, speed=1.0), gp.Species(8, 1.2, speed=1.0)]
-    )
-    state = initial_state(scene, seed=2)
-    assert (state.radii[:150] == 0.25).all()
-    assert closest(scene, state) >= 0
-
-
 def test_a_slab_is_empty_in_its_upper_half_only():
     edge = 1.6
     container = gp.Container((4 * edge, 4 * edge, 6 * edge), "periodic")
@@ -169,12 +153,6 @@ def test_a_slab_that_cannot_fill_its_crystal_is_refused():
         initial_state(scene, seed=1)
 
 
-def test_arrangements_that_share_a_lattice_do_not_mix():
-    kinds = [gp.Species(8, 0.5, arrangement=name) for name in ("lattice", "slab")]
-    with pytest.raises(gp.SceneError, match="is shared by all"):
-        gp.Scene(gp.Container((8.0, 8.0, 8.0)), kinds)
-
-
 def test_random_particles_fill_the_space_between_a_lattice():
     electrons = gp.Species(200, 0.02, temperature=1.0)
     scatterers = gp.Species(160, 0.5, fixed=True, arrangement="lattice")
@@ -185,7 +163,7 @@ def test_random_particles_fill_the_space_between_a_lattice():
     apart[..., 1] = np.minimum(apart[..., 1], 20.0 - apart[..., 1])
     apart = np.linalg.norm(apart, axis=-1)
     np.fill_diagonal(apart, np.inf)
-    assert (apart >= state.radii[:, None] + state.radii).all()
+    assert closest(scene, state) >= 0.0
     nearest = apart[200:, 200:].min(axis=1)
     assert np.allclose(nearest, nearest[0]) and nearest[0] > 2.0  # all at one distance: a lattice
 
@@ -252,8 +230,7 @@ def test_gases_in_separate_regions_have_each_their_exact_temperature(boundary):
 
 
 @pytest.mark.parametrize(
-    ("boundary", "axes"),
-    [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)],
+    ("boundary", "axes"), [("periodic", 3), (("periodic", "wall", "periodic"), 2), ("wall", 0)]
 )
 def test_the_temperature_about_the_conserved_momentum_is_exact(boundary, axes):
     for seed in range(3):

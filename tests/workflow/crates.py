@@ -12,43 +12,12 @@ from requests_cache import CachedRequest, CachedResponse, CachedSession
 from rocrate_validator import services
 from rocrate_validator.models import Severity, ValidationSettings
 
-OF_SCHEMA = [
-    "ComputerLanguage",
-    "CreateAction",
-    "CreativeWork",
-    "Dataset",
-    "Organization",
-    "Person",
-    "SoftwareSourceCode",
-    "about",
-    "additionalType",
-    "affiliation",
-    "agent",
-    "author",
-    "contentSize",
-    "creator",
-    "datePublished",
-    "description",
-    "encodingFormat",
-    "endTime",
-    "exampleOfWork",
-    "hasPart",
-    "identifier",
-    "instrument",
-    "keywords",
-    "license",
-    "mainEntity",
-    "mentions",
-    "name",
-    "object",
-    "programmingLanguage",
-    "result",
-    "startTime",
-    "url",
-    "valueRequired",
-    "version",
-    "workExample",
-]
+OF_SCHEMA = ["ComputerLanguage", "CreateAction", "CreativeWork", "Dataset", "Organization", "Person"]
+OF_SCHEMA += ["SoftwareSourceCode", "about", "additionalType", "affiliation", "agent", "author"]
+OF_SCHEMA += ["contentSize", "creator", "datePublished", "description", "encodingFormat", "endTime"]
+OF_SCHEMA += ["exampleOfWork", "hasPart", "identifier", "instrument", "keywords", "license", "mainEntity"]
+OF_SCHEMA += ["mentions", "name", "object", "programmingLanguage", "result", "startTime", "url"]
+OF_SCHEMA += ["valueRequired", "version", "workExample"]
 WORKFLOW = "https://bioschemas.org/ComputationalWorkflow"
 CONTEXTS = {
     "https://w3id.org/ro/crate/1.1/context": {
@@ -61,7 +30,7 @@ CONTEXTS = {
         "output": f"{WORKFLOW}#output",
     },
     "https://w3id.org/ro/terms/workflow-run/context": {
-        "sha256": "https://w3id.org/ro/terms/workflow-run#sha256",
+        "sha256": "https://w3id.org/ro/terms/workflow-run#sha256"
     },
 }
 

@@ -139,21 +139,6 @@ def test_the_module_of_the_docs_beside_a_rule_all_of_its_own(tmp_path):
     assert Workspace(tmp_path).plan(source=ROOT)["figure"] == 1
 
 
-STAGES = {"warm": 1, "simulate": 3, "figure": 1}
-
-
-def test_a_module_may_have_figures_of_its_own_only(tmp_path):
-    """The config of docs/adding-a-figure.md, with what a whole one needs."""
-    assert OWN
-    config = {"title": "my gas", "seed": 1, "points": "results/points", **parse_yaml(OWN[1])}
-    write_yaml(tmp_path / "settings.yaml", config)
-    (tmp_path / "Snakefile").write_text(SNAKEFILE)
-    here = Workspace(tmp_path)
-    assert here.plan("all", source=ROOT) == {**STAGES, "claims": 1, "report": 1, "all": 1}
-    write_yaml(tmp_path / "settings.yaml", config | {"figures": {}})
-    assert here.plan("points", source=ROOT) == {"warm": 1, "simulate": 3, "points": 1}
-
-
 def test_results_of_a_module_are_archived_and_verified(tmp_path, capsys):
     """A folder with a Snakefile, a config of any name, a scene file and CITATION.cff, and no more."""
     project, snakefile = tmp_path / "project", "workflow/Snakefile"
@@ -188,13 +173,6 @@ def test_results_of_a_module_are_archived_and_verified(tmp_path, capsys):
         assert main(["verify", str(place), "--rerun", "1"]) == 0, capsys.readouterr()
         assert "the same bits in" in capsys.readouterr().out
         shutil.unpack_archive(archive, tmp_path / "unpacked")
-
-
-def test_a_figure_of_ones_own_is_laid_over_the_config_in_a_run_with_a_name(fresh, tmp_path):
-    own = tmp_path / "my_gas.yaml"
-    own.write_text("run: mine\n" + OWN[1])
-    targets = ["results/mine/figures/my_gas.png", "results/mine/claims/my_gas.csv"]
-    assert fresh.plan(*targets, "--configfile", str(own)) == STAGES
 
 
 def test_a_point_that_another_clone_has_simulated_comes_from_the_shared_cache(tmp_path, monkeypatch):

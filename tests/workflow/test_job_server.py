@@ -120,10 +120,7 @@ exit_on_signals(lambda text: print(text, flush=True))
 print(os.getpid(), flush=True)
 time.sleep(60)
 """
-    for number, code, said in (
-        (signal.SIGTERM, 143, "terminated\n"),
-        (signal.SIGINT, 130, "interrupted\n"),
-    ):
+    for number, code, said in ((signal.SIGTERM, 143, "terminated\n"), (signal.SIGINT, 130, "interrupted\n")):
         client, process = server.begin(announced)
         client.send_signal(number)
         assert (client.communicate()[0], client.returncode) == (said, code)

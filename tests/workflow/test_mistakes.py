@@ -1,12 +1,8 @@
 """A user's mistake, as Snakemake reports it: one line, exit code 2, nothing written."""
 
-import os
-import subprocess
-import sys
-
 import pytest
 from machine import WITHOUT_RIGHTS, why_not
-from workspace import ROOT, SMOKE, copy_of_project
+from workspace import SMOKE, copy_of_project
 
 pytestmark = pytest.mark.workflow
 
@@ -63,21 +59,6 @@ def test_a_folder_that_may_not_be_written_to_is_one_line(tmp_path, folder):
         f"gaspart: folder = {str(folder)!r}: this user may not write to it, where the workflow keeps results"
     )
     assert "Traceback" not in result.stdout
-
-
-@pytest.mark.skipif(why_not(WITHOUT_RIGHTS) is not None, reason=str(why_not(WITHOUT_RIGHTS)))
-def test_a_run_into_a_folder_that_may_not_be_written_to_is_one_line(tmp_path):
-    scene = tmp_path / "scene.yaml"
-    scene.write_text("container: {lengths: [9.0, 9.0]}\nspecies: [{count: 9, radius: 0.5, speed: 1.0}]\n")
-    tmp_path.chmod(0o555)
-    run = [sys.executable, "-m", "gaspart", "run", str(scene), "-o", str(tmp_path / "run.nc")]
-    run += ["--duration", "1", "--sample-interval", "1"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
-    done = subprocess.run([*WITHOUT_RIGHTS, *run], env=environment, capture_output=True, text=True)
-    tmp_path.chmod(0o755)
-    assert done.returncode == 2
-    assert "must be a file in an existing folder that can be written to" in done.stderr
-    assert done.stderr.count("\n") == 1
 
 
 def test_a_mistake_on_the_command_line_is_not_blamed_on_a_file(few):

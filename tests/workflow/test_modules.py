@@ -5,11 +5,7 @@ import re
 import subprocess
 import sys
 from functools import cache
-from importlib import import_module
 from pathlib import Path
-from types import ModuleType
-
-import pytest
 
 from gaspart.reproduction.points.modules import PACKAGE, closure, find_imports, measuring_digest
 from gaspart.reproduction.registry import modules
@@ -141,32 +137,3 @@ def test_every_rule_states_what_it_needs():
             script = ROOT / f"workflow/scripts/{name}.py"
             assert script.exists()
             assert re.search(rf'(scripts/|SCRIPTS / "){name}\.py', file.read_text())
-
-
-def modules_in(path):
-    """Modules of gaspart that a script of the workflow imports, by their names in it."""
-    modules = {}
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if not isinstance(node, ast.ImportFrom):
-            continue
-        if node.module == "_job":
-            shared = modules_in(path.with_name("_job.py"))
-            modules |= {alias.name: shared[alias.name] for alias in node.names if alias.name in shared}
-        elif node.module.startswith("gaspart"):
-            for alias in node.names:
-                thing = getattr(import_module(node.module), alias.name, None)
-                thing = thing or import_module(f"{node.module}.{alias.name}")
-                if isinstance(thing, ModuleType):
-                    modules[alias.asname or alias.name] = thing
-    return modules
-
-
-@pytest.mark.parametrize(
-    "script", sorted((ROOT / "workflow/scripts").glob("*.py")), ids=lambda path: path.name
-)
-def test_the_functions_that_a_script_of_the_workflow_calls_exist(script):
-    """mypy does not read these scripts, and Snakemake runs some of them only at the end."""
-    modules = modules_in(script)
-    for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules:
-            assert hasattr(modules[node.value.id], node.attr), f"{script.name}:{node.lineno}: {node.attr}"

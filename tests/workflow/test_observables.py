@@ -2,8 +2,6 @@
 
 import ast
 import inspect
-import subprocess
-import sys
 from importlib import import_module
 
 import pytest
@@ -108,13 +106,6 @@ def test_mutual_diffusion_is_transport():
     """It was missing in one of thirteen tables."""
     assert "mutual_diffusion" in observables_with(memory=True)
     assert set(observables_with(needs="paths")) <= set(observables_with(memory=True))
-
-
-def test_the_command_line_starts_without_what_observables_need():
-    code = "import sys, gaspart.cli; from gaspart.cli import main\n"
-    code += "try: main(['--help'])\nexcept SystemExit: pass\nprint(*sys.modules, file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numba", "xarray", "scipy.stats", "netCDF4"} & set(done.stderr.split())
 
 
 def test_the_equation_of_dsmc_is_its_contact_value():
