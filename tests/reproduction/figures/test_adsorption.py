@@ -48,13 +48,6 @@ def test_scaled_particle_theory_is_exact_to_the_second_order_and_near_the_refere
         assert reference == pytest.approx(eta, rel=0.015)
 
 
-def test_the_flux_is_normalised_and_its_slow_share_is_its_integral():
-    v = (np.arange(80000) + 0.5) * 1e-4
-    density = adsorption.flux_density(v) * 1e-4
-    assert density.sum() == pytest.approx(1.0, rel=1e-8)
-    assert adsorption.slow_flux_share(1.0) == pytest.approx(density[v < 1.0].sum(), rel=1e-6)
-
-
 def test_a_single_sphere_in_front_of_a_layer_closes_half_a_ball():
     assert adsorption.excluded_in_front(0.0, 1e-9) == pytest.approx(2.0 * np.pi / 3.0)
     assert adsorption.layer_activity(2.0, 0.0, 0.01, 1e-9) == pytest.approx(2.0)
@@ -115,15 +108,6 @@ def point(name, folder="results/points", **settings):
     return Point("held", "single", "simulate", {"equilibration": 20.0} | settings, str(folder), 1)
 
 
-def test_what_holds_is_read_from_the_scene():
-    ideal, layer, sticky = (Wall(point(name)) for name in ("ideal", "monolayer", "sticky"))
-    assert (ideal.kind, layer.kind, sticky.kind) == ("ideal", "layer", "sticky")
-    assert (ideal.slow, sticky.slow) == (1.0, 1.0)
-    assert ideal.outside == pytest.approx(1.975 - 0.2)
-    assert (layer.width, layer.outside, layer.area) == (0.1, pytest.approx(38.9), 100.0)
-    assert (sticky.width, sticky.depth, sticky.outside) == (0.0, 0.0, 9.0)
-
-
 def test_an_ideal_gas_in_frames_is_counted_as_it_was_made():
     """Independent frames of a Maxwellian gas, in the Boltzmann distribution of the well."""
     rng = np.random.default_rng(4)
@@ -164,14 +148,3 @@ def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     assert 1.0001 < float(dataset["length"]) / (0.2 * float(dataset["ratio"]) / expected) < 1.001
     with pytest.raises(ValueError, match="blocks: 31"):
         adsorption.measure([one], SETTINGS | {"blocks": 31})
-
-
-def test_the_coverage_of_a_layer_is_compared_with_that_of_discs():
-    wall = Wall(point("monolayer"))
-    far, held = 0.01 * (wall.outside - 2.0 * wall.sigma) * wall.area, 25.0
-    for _ in range(50):  # until the coverage is that of discs at the activity which it gives the layer
-        held /= wall.filling(held, 1e9, far)
-    assert wall.filling(held, 1e9, far) == pytest.approx(1.0)
-    plain = packing_fraction_at(wall.activity(far), 2)
-    assert 1.002 < wall.coverage(held) / plain < 1.006  # more than with the pressure alone, by first order
-    assert 1.002 < 1.0 / wall.filling(held, 40.0, far) < 1.006  # a small gas leaves the layer more

@@ -58,21 +58,6 @@ def test_discs_melt_and_stay(tmp_path):
     assert bragg[1] > 4.0 * bragg[0]
 
 
-def test_discs_of_the_published_number_are_compared_and_not_drawn(tmp_path):
-    long = {"equilibration": 40, "duration": 60}  # of a lattice that melts
-    peer = {**DISC_POINT, **long, "count": 870, "side": [29, 30 * 0.8660254037844386]}
-    made = {
-        "discs": (DISC_POINT, {"packing_fraction": [0.5, 0.74]}),
-        "peers": (peer, {"packing_fraction": [0.68]}),
-    }
-    settings = {"shown": [0.74], "furthest": 3, "bins": 30, "highest": 8}
-    dataset = freezing_discs.measure(simulated(tmp_path, made), settings)
-    assert dataset["packing_fraction"].values == pytest.approx([0.5, 0.74])
-    assert dataset["compared_packing_fraction"].values == pytest.approx([0.68])
-    assert dataset["compared_pressure"].item() == pytest.approx(8.51, rel=0.03)
-    assert dataset["compared_pressure_error"].item() > 0.0
-
-
 def test_spheres_keep_to_their_branches(tmp_path):
     slab = {**SPHERE_POINT, **SLAB}
     points = simulated(

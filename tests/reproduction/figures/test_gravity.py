@@ -78,35 +78,6 @@ def test_the_pressure_is_the_mean_over_each_bin_of_the_weight_above():
     assert above == pytest.approx([(0.5 * 6 + 0.5 * 5 + 1.0 * 4) / 2.0, 1.25 * 4 / 2.0])
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("boundary", ["wall", "periodic"])
-def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
-    scene = gp.Scene(
-        gp.Container((6.0, 12.0), (boundary, "wall")),
-        [gp.Species(40, 0.05, temperature=0.5), gp.Species(40, 0.05, mass=3.0, temperature=0.5)],
-        gravity=(0.0, -0.2),
-    )
-    scene.to_file(tmp_path / "scene.yaml")
-    made = run(point(tmp_path / "scene.yaml", duration=2000.0, equilibration=400.0, samples=400), tmp_path)
-    ds = gravity.measure_two_kinds([made], SETTINGS | {"blocks": 10}).isel(point=0)
-    assert float(ds["imbalance"]) < 1e-9
-    assert float(ds["range_ratio"][0]) == pytest.approx(1.0, abs=0.1)
-    for name in ("slope_ratio", "exchange_ratio", "mean_height_ratio", "species_temperature_ratio"):
-        error = ds[f"{name}_error"].values
-        assert np.all(error < 0.15), name
-        assert np.all(np.abs(ds[name].values - 1.0) < 4.5 * error + 0.02), name
-    assert float(ds["density"].sel(species=1)[0]) > 2.0 * float(ds["density"].sel(species=1)[-1])
-
-
-@pytest.mark.interpreted
-def test_fewer_frames_than_stretches_are_refused(tmp_path):
-    scene = gp.Scene(gp.Container((4.0, 4.0)), [gp.Species(5, 0.1, temperature=1.0)], gravity=(0.0, -1.0))
-    scene.to_file(tmp_path / "scene.yaml")
-    made = run(point(tmp_path / "scene.yaml", samples=3, duration=3.0, equilibration=0.0), tmp_path)
-    with pytest.raises(ValueError, match="blocks: 4"):
-        gravity.measure_one_kind([made], SETTINGS)
-
-
 @pytest.fixture
 def source_column(tmp_path):
     """A point of a mixture whose sample begins at 10."""

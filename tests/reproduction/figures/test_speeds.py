@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import xarray as xr
 from reproduction.figures.stored import runs_of
-from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
@@ -125,15 +122,6 @@ def test_a_mixture_of_hit_and_never_hit_particles_is_told_apart(stored):
     assert (ds["density"].values * widths).sum(axis=-1) == pytest.approx(np.ones((2, 2)), abs=2e-3)
 
 
-def test_the_smaller_group_takes_the_scatter_of_both():
-    rng = np.random.default_rng(3)
-    few, many = rng.normal(0.0, 1.0, (2, 5)), rng.normal(7.0, 1.0, (400, 5))
-    for (_, errors), count in zip(speeds.shared_means([few, many]), (2, 400), strict=True):
-        assert errors * np.sqrt(count) == pytest.approx(np.ones(5), rel=0.15)
-    with pytest.raises(ValueError):
-        speeds.shared_means([few[:1], many[:1]])
-
-
 def test_other_scenes_or_times_are_refused(stored):
     rng = np.random.default_rng(4)
     one, other = point(), point(experiment="other", count=100)
@@ -177,17 +165,3 @@ def test_the_conserved_energy_takes_a_degree_of_freedom(stored):
         cdf = lambda u: theory.maxwell_cdf(u, 3, 1 / 3)  # noqa: E731
         found.append(histogram_chi_square(run.speeds.ravel(), cdf, 10).chi_square)
     assert np.mean(found) == pytest.approx(8.0, abs=4 * np.sqrt(16 / 300))
-
-
-def test_a_real_gas_relaxes(tmp_path):
-    one = point(count=500, packing_fraction=0.05, duration=8.0, samples=8, replicas=2, boundary="wall")
-    one = simulated(replace(one, root=str(tmp_path)))
-    ds = measure_relaxation([one], {"times": [2.0, 8.0], "bins": 10, "highest": 2.5}).isel(engine=0)
-    s = ds["collisions"].values
-    assert s[-1] > 4.0
-    theoretical = theory.relaxation(3)
-    assert ds["kurtosis"].values == pytest.approx(theoretical.kurtosis(s), abs=0.12)
-    assert ds["never_hit"].values == pytest.approx(theoretical.never_hit(s), abs=0.06)
-    assert np.diff(ds["entropy_deficit"])[:5].max() < 0.0
-    assert float(ds["temperature_drift"].max()) < 1e-13
-    assert s[-1] == pytest.approx(float(theoretical.collisions(ds.attrs["collision_rate"] * 8.0)), rel=0.15)

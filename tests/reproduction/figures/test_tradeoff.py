@@ -123,12 +123,6 @@ def test_a_pressure_error_is_weighed_by_its_part_in_z(dataset):
     assert row.bias.values[:3] == pytest.approx(-(STEPS[:3] ** 3) / 3.0, rel=1e-2)
 
 
-def test_a_refused_step_is_left_out(dataset):
-    late = dataset.set_index(row="setting").sel(row="1 pass, no rewinding")
-    assert late.time_step.values[:3] == pytest.approx(STEPS[1:])
-    assert np.isnan(late.time_step.values[3])
-
-
 def test_models_of_dsmc_in_discs(tmp_path):
     """The cheapest step; the error of Z of the Boltzmann equation. That of the Enskog model is unknown: the
     loss in its cells was measured in spheres."""
@@ -217,14 +211,6 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
     assert parts[:, 0, 1].tolist() == [0.01, 0.001, 0.001] and costs[2, 0, 0] == math.inf
 
 
-def test_what_the_size_leaves_falls_with_it():
-    small, large = (Gas(3, 0.3, count, 1.0, 1.0) for count in (1000, 8000))
-    for name in tradeoff.OBSERVABLES:
-        assert 0.0 < tradeoff.finite_size(large, name) < tradeoff.finite_size(small, name) < 0.01
-    (wave, lost), (speeds, whole) = tradeoff.decay_of(small, "D"), tradeoff.decay_of(small, "Z")
-    assert wave > speeds and whole == 1.0 and 0.05 < lost < 0.2
-
-
 def test_steps_of_a_fifth_of_a_free_time():
     """16 / (75 pi) is for the viscosity, 4 / (27 pi) for D, of (c step / l)^2."""
     step = 0.2 / float(theory.collision_rate(0.001, 3))
@@ -288,16 +274,6 @@ def point(folder, **settings):
     return made
 
 
-def test_relaxation_of_a_small_gas(tmp_path):
-    run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_particle": 3, "samples": 12, "replicas": 4}
-    made = point(tmp_path, engine="event", **run)
-    found = flows.relaxation_of(made)
-    assert abs((found.value - flows.relaxation_time(1.0)).deviation) < 4.0
-    rate = float(theory.collision_rate(0.1, 3))
-    assert found.contacts == pytest.approx(0.5 * 400 * rate, rel=0.1)
-    assert found.candidate.bias == 0.0 and found.decay == 0.0
-
-
 def test_cells_of_a_small_gas(tmp_path):
     """With one cell nothing is lost; with 27 of 15 the Enskog model loses collisions."""
     gas = {
@@ -312,12 +288,3 @@ def test_cells_of_a_small_gas(tmp_path):
     assert 1.0 - many.bound < many.rate.value < 1.0 - 4.0 * many.rate.error
     assert many.error > many.bound / 4.0
     assert np.isfinite(list(one.noise.values())).all()
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(4e-4, "0.4 ms"), (0.0123, "12 ms"), (0.553, "550 ms"), (3.2, "3 s"), (59.0, "59 s"), (150.0, "2 min"),
-     (4000.0, "1 h"), (2e5, "2 d"), (4e8, "13 y")],
-)  # fmt: skip
-def test_durations(seconds, text):
-    assert time_to_accuracy.duration(seconds) == text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from gaspart import theory
@@ -42,31 +41,6 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
         if name == "viscosity":
             assert float(row["bulk_error"]) < 0.15
             assert abs(float(row["bulk"]) - 1.0) < 4.5 * float(row["bulk_error"]) + 0.03
-
-
-@pytest.mark.thorough
-def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
-    """Dilute discs in two small containers: growths are noise, the curves those of `coefficient`."""
-    short = {"dimension": 2, "replicas": 4, "samples": 200, "collisions_per_particle": 200}
-    points = [
-        simulated(tmp_path, monkeypatch, "discs", f"count={count}", count=count, **short)
-        for count in (36, 64)
-    ]
-    starts = {"viscosity": 4.0, "conductivity": 8.0}
-    found = transport.measure_growth(points, {f"{name}_from": start for name, start in starts.items()})
-    for name, measure in MEASURE.items():
-        plain = measure(points, {})
-        np.testing.assert_allclose(found[name], plain["running"])
-        np.testing.assert_allclose(found["time"], plain["time"])
-        late = found["time"].values >= starts[name]
-        modes = found[f"{name}_modes"].values
-        assert (np.isfinite(modes) == late).all()
-        for row in range(2):
-            ends = np.flatnonzero(late[row])[[0, -1]]
-            grown, of_modes = np.diff(found[name].values[row, ends]), np.diff(modes[row, ends])
-            assert np.isclose(float(found[f"{name}_growth"][row]), grown[0])
-            assert np.isclose(float(found[f"{name}_modes_growth"][row]), of_modes[0])
-            assert 0.0 < float(found[f"{name}_short_waves"][row]) < 1.0
 
 
 @pytest.mark.parametrize(
