@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduction.made import simulated
 from scipy.spatial import cKDTree
 from scipy.special import gammaln
 
@@ -134,11 +135,7 @@ def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
 
 @pytest.mark.thorough
 def test_a_real_well_holds_as_many_as_it_must(tmp_path):
-    one = point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0})
-    path = one.replica_path(0)
-    Path(path).parent.mkdir(parents=True)
-    times = one.schedule
-    gp.run(one.scene, one.engine, one.seed(0), times.duration, times.sample_interval, path)
+    one = simulated(point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0}))
     dataset = adsorption.measure([one], SETTINGS).isel(point=0)
     expected = well_ratio(1.0, 0.2, 1.975 - 0.2)
     error = float(dataset["log_ratio_error"])

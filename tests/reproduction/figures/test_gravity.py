@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart.reproduction.figures import _columns, gravity
@@ -43,17 +43,6 @@ def ideal_column(rng, frames, masses, height=4.0, width=3.0, strength=1.0, tempe
 SETTINGS = {"bins": 8, "blocks": 4, "clear": 0.5, "ranges": [[0.001, 0.01]]}
 SETTINGS |= {"source_collisions": 100.0, "source_temperature": 1.0, "source_shares": [0.5]}
 SETTINGS |= {"columns": {"source": "column_source"}}
-
-
-def run(point, root):
-    """The point with its simulations made."""
-    made = replace(point, root=str(root))
-    times = made.schedule
-    for k, path in enumerate(made.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        scene, engine = made.scene, made.engine
-        gp.run(scene, engine, made.seed(k), times.duration, times.sample_interval, path)
-    return made
 
 
 def test_the_profile_of_an_ideal_column_is_barometric():
@@ -122,7 +111,7 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(source_column, mon
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(source_column, tmp_path):
     settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3}
     own = replace(source_column, experiment="column_source")
-    made = [run(p, tmp_path) for p in (source_column, own)]
+    made = [simulated(replace(point, root=str(tmp_path))) for point in (source_column, own)]
     ds = gravity.measure_two_kinds(made, settings)
     assert np.isnan(ds["collisions"][0]) and np.isnan(ds["share"][0]).all()
     sim = gp.Simulation(own.scene, own.engine, seed=own.seed(0))

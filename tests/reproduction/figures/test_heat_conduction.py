@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduction.made import made
 
 import gaspart as gp
 from gaspart.reproduction.figures import heat_conduction_gas, heat_conduction_metal
@@ -16,15 +17,7 @@ from gaspart.theory.heat import free_molecular_flux
 
 def run(tmp_path, scene, **settings):
     """A point of this scene with its runs made."""
-    scene.to_file(tmp_path / "scene.yaml")
-    settings |= {"scene": str(tmp_path / "scene.yaml")}
-    point = Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
-    times = point.schedule
-    for k, path in enumerate(point.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        engine = point.engine
-        gp.run(point.scene, engine, point.seed(k), times.duration, times.sample_interval, path)
-    return point
+    return made(tmp_path, "heat", scene, **{"replicas": 1} | settings)
 
 
 def gas(count, radius, components="all"):

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart import theory
 from gaspart.reproduction.figures import mixtures
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
@@ -30,13 +30,11 @@ def point(**settings):
     return Point("mixture", "one", "simulate", GAS | settings, "results", 1)
 
 
-def test_both_kinds_are_near_theory(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    points = [point(**TWO), point(polydispersity=0.2)]
-    points[1] = Point("many", *("one", "simulate"), points[1].settings, "results", 1)
-    for one in points:
-        (tmp_path / one.path).parent.mkdir(parents=True)
-        simulate(tmp_path / one.path, **one.arguments)
+def test_both_kinds_are_near_theory(tmp_path):
+    points = [
+        simulated(Point(name, "one", "simulate", GAS | sizes, str(tmp_path), 1))
+        for name, sizes in (("mixture", TWO), ("many", {"polydispersity": 0.2}))
+    ]
     ds = mixtures.measure(points, {})
     assert ds["packing_fraction"].values == pytest.approx(0.2, rel=1e-12)
     for row in (ds.isel(point=n) for n in (0, 1)):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart import theory
@@ -16,13 +17,11 @@ from gaspart.reproduction.figures import _flows as flows
 from gaspart.reproduction.figures import _tradeoff as tradeoff
 from gaspart.reproduction.figures import speed_accuracy, time_to_accuracy
 from gaspart.reproduction.figures._tradeoff import ENGINES, PARTS, Choice
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.facts import Gas
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
 SETTINGS = {"order_up_to": 0.2, "cells": []}
-FRACTIONS = (0.0001, 0.001, 0.01, 0.1, 0.3)
 SNAPSHOTS, CONTACTS, Z, SECONDS = 6, 1e5, 1.5, 1e-6
 
 
@@ -269,9 +268,7 @@ def test_rarer_collisions_make_speeds_relax_later():
 def point(folder, **settings):
     """A point whose runs have been made."""
     basic = {"dimension": 3, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.1}
-    made = Point("gas", "point", "simulate", basic | settings, str(folder), 1)
-    simulate(folder / "gas" / "point", **made.arguments)
-    return made
+    return simulated(Point("gas", "point", "simulate", basic | settings, str(folder), 1))
 
 
 def test_cells_of_a_small_gas(tmp_path):
@@ -281,7 +278,6 @@ def test_cells_of_a_small_gas(tmp_path):
         "engine": "dsmc", "model": "enskog",
         "collisions_per_particle": 1000, "equilibration": 10, "samples": 50,
     }  # fmt: skip
-    (tmp_path / "one").mkdir(), (tmp_path / "many").mkdir()
     one = tradeoff.Cells(point(tmp_path / "one", cells_per_side=1, **gas))
     many = tradeoff.Cells(point(tmp_path / "many", cells_per_side=3, **gas))
     assert abs((one.rate - 1.0).deviation) < 4.0 and one.bound == 0.0

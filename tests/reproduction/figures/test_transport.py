@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.reproduction.figures import transport
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries, from_rows
 
@@ -19,17 +19,9 @@ GAS = {
 MEASURE = {"viscosity": transport.measure_viscosity, "conductivity": transport.measure_conductivity}
 
 
-def simulated(tmp_path, monkeypatch, experiment, name, **changes):
-    monkeypatch.chdir(tmp_path)
-    one = Point(experiment, name, "simulate", GAS | changes, "results", 1)
-    (tmp_path / one.path).parent.mkdir(parents=True, exist_ok=True)
-    simulate(tmp_path / one.path, **one.arguments)
-    return one
-
-
-def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
+def test_coefficients_are_near_enskogs(tmp_path):
     """At packing fraction 0.1, where these differ from it by a few per cent, by 4 sigma of some 6 %."""
-    one = simulated(tmp_path, monkeypatch, "spheres", "one")
+    one = simulated(Point("spheres", "one", "simulate", GAS, str(tmp_path), 1))
     for name, measure in MEASURE.items():
         row = measure([one], {}).isel(point=0)
         error = float(row["value_error"])
