@@ -26,10 +26,7 @@ def test_uncertainties_are_propagated():
     assert product.error == pytest.approx(12.0 * math.hypot(0.1, 0.1))
     assert ratio.value == 0.75
     assert ratio.error == pytest.approx(0.75 * math.hypot(0.1, 0.1))
-
-
-def test_a_plain_number_in_a_formula_is_exact():
-    estimate = Estimate(3.0, 0.5)
+    estimate = Estimate(3.0, 0.5)  # a plain number is exact
     assert estimate + 1.0 == Estimate(4.0, 0.5)
     assert estimate - np.float64(1.0) == Estimate(2.0, 0.5)
     assert estimate * -2.0 == Estimate(-6.0, 1.0)

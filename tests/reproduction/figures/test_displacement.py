@@ -22,20 +22,10 @@ from gaspart.trajectory.correlator import SUMS
 def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):
     """One point of a grid at temperature 1; nothing of it is run."""
     settings = {
-        "dimension": dimension,
-        "count": count,
-        "radius": 0.5,
-        "packing_fraction": packing_fraction,
-        "boundary": "periodic",
-        "arrangement": "lattice",
-        "temperature": 1.0,
-        "engine": "event",
-        "collisions_per_particle": 120,
-        "samples": 120,
-        "displacements": True,
-        "lags": 120,
-        "replicas": 4,
-    }
+        "dimension": dimension, "count": count, "radius": 0.5, "packing_fraction": packing_fraction,
+        "boundary": "periodic", "arrangement": "lattice", "temperature": 1.0, "engine": "event",
+        "collisions_per_particle": 120, "samples": 120, "displacements": True, "lags": 120, "replicas": 4,
+    }  # fmt: skip
     return Point(experiment, name, "simulate", settings | more, "results/points", 1)
 
 

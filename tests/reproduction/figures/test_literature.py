@@ -10,20 +10,10 @@ from gaspart.reproduction.figures.literature import measure
 from gaspart.reproduction.points.point import Point
 
 GAS = {
-    "dimension": 3,
-    "count": 1372,
-    "radius": 0.5,
-    "packing_fraction": 0.261799388,
-    "boundary": "periodic",
-    "temperature": 1.0,
-    "exact_temperature": True,
-    "arrangement": "lattice",
-    "engine": "event",
-    "collisions_per_particle": 40,
-    "equilibration": 15,
-    "samples": 40,
-    "replicas": 2,
-}
+    "dimension": 3, "count": 1372, "radius": 0.5, "packing_fraction": 0.261799388, "boundary": "periodic",
+    "temperature": 1.0, "exact_temperature": True, "arrangement": "lattice", "engine": "event",
+    "collisions_per_particle": 40, "equilibration": 15, "samples": 40, "replicas": 2,
+}  # fmt: skip
 TRANSPORT = {"lags": 10, "stress": True, "follow": 1}
 DIFFUSION = {"lags": 16, "displacements": True, "collisions_per_particle": 64, "samples": 32}
 

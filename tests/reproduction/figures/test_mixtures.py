@@ -10,19 +10,10 @@ from gaspart.reproduction.figures import mixtures
 from gaspart.reproduction.points.point import Point
 
 GAS = {
-    "dimension": 3,
-    "count": 200,
-    "radius": 0.5,
-    "packing_fraction": 0.2,
-    "boundary": "periodic",
-    "temperature": 1.0,
-    "exact_temperature": True,
-    "engine": "event",
-    "collisions_per_particle": 300,
-    "equilibration": 20,
-    "samples": 32,
-    "replicas": 2,
-}
+    "dimension": 3, "count": 200, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
+    "temperature": 1.0, "exact_temperature": True, "engine": "event", "collisions_per_particle": 300,
+    "equilibration": 20, "samples": 32, "replicas": 2,
+}  # fmt: skip
 TWO = {"size_ratio": 0.6, "small_fraction": 0.5, "pairs": True}
 
 

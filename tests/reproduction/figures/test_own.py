@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import check
 from gaspart.reproduction.figures import own
-from gaspart.reproduction.figures.own import APPROXIMATE, caption
+from gaspart.reproduction.figures.own import APPROXIMATE
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.points import figure_points
 
@@ -181,13 +181,6 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
     assert [claim.claim for claim in claims] == [
         f"pressure at packing_fraction 0.1, {face} (at least 1)" for face in ("y high", "y low")
     ]
-
-
-def test_a_caption_without_a_finding_gets_a_title():
-    assert caption(SETTINGS) == (
-        "**Compressibility factor PV/(N k_B T), against packing fraction.** Spheres in a periodic cube."
-    )
-    assert caption({**SETTINGS, "caption": "**Mine.** Text"}) == "**Mine.** Text"
 
 
 @pytest.mark.parametrize(

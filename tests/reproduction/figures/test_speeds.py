@@ -10,7 +10,6 @@ from reproduction.figures.stored import runs_of
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
-from gaspart.reproduction.figure import kurtosis
 from gaspart.reproduction.figures import speeds
 from gaspart.reproduction.figures.speeds import measure_distribution, measure_relaxation
 from gaspart.reproduction.points.point import Point
@@ -19,16 +18,9 @@ from gaspart.reproduction.points.point import Point
 def point(dimension=3, count=200, experiment="speeds", **more):
     """One point of a grid; nothing of it is run."""
     settings = {
-        "dimension": dimension,
-        "count": count,
-        "radius": 0.2,
-        "packing_fraction": 0.01,
-        "speed": 1.0,
-        "engine": "event",
-        "duration": 3.0,
-        "samples": 3,
-        "replicas": 4,
-    }
+        "dimension": dimension, "count": count, "radius": 0.2, "packing_fraction": 0.01, "speed": 1.0,
+        "engine": "event", "duration": 3.0, "samples": 3, "replicas": 4,
+    }  # fmt: skip
     return Point(experiment, "single", "simulate", settings | more, "results/points", 1)
 
 
@@ -80,14 +72,6 @@ def mixture(rng, never, count=4000, dimension=3):
     later[untouched:] /= np.sqrt((later[untouched:] ** 2).sum() / (count - untouched))
     later[:untouched] = first[:untouched] * rng.choice([-1.0, 1.0], (untouched, dimension))
     return np.stack([first, later])
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_kurtosis_of_equal_and_of_maxwellian_speeds(dimension):
-    rng = np.random.default_rng(1)
-    assert kurtosis(np.full((3, 7), 2.5)) == pytest.approx(np.ones(3))
-    sample = np.linalg.norm(rng.standard_normal((200_000, dimension)), axis=1)
-    assert kurtosis(sample) == pytest.approx(theory.kurtosis(dimension), abs=0.02)
 
 
 def test_walls_do_not_hit_but_the_last_bit_does():

@@ -14,17 +14,10 @@ from gaspart.reproduction.figures.chemical_potential import STATE_POWERS, Measur
 from gaspart.reproduction.points.point import Point
 
 GAS = {
-    "dimension": 3,
-    "count": 108,
-    "radius": 0.5,
-    "boundary": "periodic",
-    "temperature": 1.0,
-    "arrangement": "lattice",
-    "engine": "event",
-    "collisions_per_particle": 400,
-    "equilibration": 20,
+    "dimension": 3, "count": 108, "radius": 0.5, "boundary": "periodic", "temperature": 1.0,
+    "arrangement": "lattice", "engine": "event", "collisions_per_particle": 400, "equilibration": 20,
     "samples": 200,
-}
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -52,10 +52,6 @@ def test_penalty():
     assert math.isnan(timings.penalty(made, 300.0)[0])
 
 
-def test_penalty_of_the_finest_boxes_where_the_time_falls_throughout():
-    assert timings.penalty(costs(np.geomspace(0.5, 8.0, 6)), 8.0)[0] == 1.0
-
-
 def test_boxes_of_a_penalty_cost_nothing_rather_than_less():
     """The time falls faster at the finest partitions than one over their number, as by a disturbance."""
     made = costs(np.geomspace(0.5, 8.0, 8))

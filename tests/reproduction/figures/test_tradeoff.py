@@ -184,15 +184,6 @@ def choice(model=0.0, discretisation=0.0, least=0.5, **changes):
     return Choice(option, **{"decay": 0.1, "uncertainty": 0.01, "finite_size": 1e-4} | changes)
 
 
-def test_a_cost_is_that_of_the_noise_that_bias_leaves_room_for():
-    assert choice().option.cost(0.001) == pytest.approx(1e-4 * (1.96 / 0.001) ** 2 + 1.0)
-    assert choice(model=0.0003, discretisation=0.0002).option.cost(0.001) == pytest.approx(
-        1e-4 * (1.96 / 0.0005) ** 2 + 1.0
-    )
-    assert choice().option.cost(0.1) == pytest.approx(1.5)  # the shortest run
-    assert choice(model=0.001).option.cost(0.001) == math.inf
-
-
 def test_parts_fill_the_accuracy():
     parts = choice(model=0.0003, discretisation=0.0002).parts(0.001)
     assert tuple(parts) == PARTS

@@ -14,16 +14,9 @@ from gaspart.reproduction.points.points import points
 from gaspart.scene.scene import Scene
 
 POINT = {
-    "dimension": 2,
-    "count": 100,
-    "radius": 0.5,
-    "packing_fraction": 0.2,
-    "boundary": "periodic",
-    "temperature": 2.0,
-    "collisions_per_particle": 50,
-    "equilibration": 3,
-    "samples": 10,
-}
+    "dimension": 2, "count": 100, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
+    "temperature": 2.0, "collisions_per_particle": 50, "equilibration": 3, "samples": 10,
+}  # fmt: skip
 
 
 def config(point=None, grid=None, job="simulate", seed=1):
