@@ -1,21 +1,26 @@
 """Schemas and the pages of the reference: current, and the same rules as those of the program."""
 
 import copy
+import json
 import re
 from pathlib import Path
 
 import jsonschema
 import pytest
 from malformed import SCENES
-from reference import in_words
+from reference import pages
 
 from gaspart.reproduction.config import check, merged_with_default, scene_schema, schema
-from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.modules import closure
 from gaspart.reproduction.registry import families, home, settings
 from gaspart.yaml_text import read_yaml
 
 ROOT = Path(__file__).parents[2]
+
+
+def test_the_site_has_the_schemas():
+    for name in ("scene", "config"):
+        assert json.loads(pages()[f"reference/{name}.schema.json"])["properties"]
 
 
 @pytest.mark.parametrize("content", [schema(), scene_schema()], ids=["config", "scene"])
@@ -90,16 +95,3 @@ def test_the_schema_of_configs_is_the_one_that_is_checked():
     config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     check(config)  # which removes what is null
     jsonschema.validate(config, schema())
-
-
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        (config_keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
-        (config_keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
-        (settings()["virial_discs"]["fits"]["items"]["properties"]["held"], "`true` or `false`"),
-        (settings()["stability_extremes"]["experiments"], "empty list"),
-    ],
-)
-def test_a_kind_in_words(kind, words):
-    assert in_words(kind) == words

@@ -11,6 +11,7 @@ from reproduction.made import made
 import gaspart as gp
 from gaspart.reproduction.figures import heat_conduction_gas, heat_conduction_metal
 from gaspart.reproduction.figures._gap import Averages, Gap, averages
+from gaspart.reproduction.figures.heat_conduction_gas import FRAMES
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.heat import free_molecular_flux
 
@@ -84,6 +85,21 @@ def test_the_jump_of_a_made_up_profile_comes_back():
     hot = 0.1 / (path * 1.9 * slope / (1.5 * np.sqrt(1.9)))
     cold = 0.05 / (path * 1.05 * slope / (1.5 * np.sqrt(1.05)))
     assert found == pytest.approx(0.5 * (hot + cold), rel=1e-3)
+
+
+@pytest.mark.thorough
+def test_a_dense_gas_is_compared_with_fourier(tmp_path):
+    point = run(tmp_path, gas(100, 0.5), duration=300.0, equilibration=100.0, samples=60, boxes_per_side=1)
+    ds = heat_conduction_gas.measure([point], {"bins": 5, "blocks": 12, "clear": 1}).isel(point=0)
+    assert float(ds["knudsen"]) < heat_conduction_gas.FLUID
+    assert float(ds["density"].mean()) == pytest.approx(100 / 360, rel=1e-3)
+    assert float(ds["profile_ratio"]) == pytest.approx(1.0, abs=0.1)
+    assert ds["approach_time"].values == pytest.approx(5.0 * np.arange(FRAMES))
+    deviation = (ds["approach"] - ds["expected_approach"]) / ds["approach_error"]
+    assert abs(float(deviation.mean())) < 1.0 and float(abs(deviation).max()) < 5.0
+    assert float(ds["expected_approach"][-1]) == pytest.approx(0.35, abs=0.1)
+    with pytest.raises(ValueError, match="blocks"):
+        heat_conduction_gas.measure([point], {"bins": 5, "blocks": 1000, "clear": 1})
 
 
 @pytest.mark.thorough

@@ -262,6 +262,16 @@ def point(folder, **settings):
     return simulated(Point("gas", "point", "simulate", basic | settings, str(folder), 1))
 
 
+def test_relaxation_of_a_small_gas(tmp_path):
+    run = {"count": 400, "speed": math.sqrt(3.0), "collisions_per_particle": 3, "samples": 12, "replicas": 4}
+    made = point(tmp_path, engine="event", **run)
+    found = flows.relaxation_of(made)
+    assert abs((found.value - flows.relaxation_time(1.0)).deviation) < 4.0
+    rate = float(theory.collision_rate(0.1, 3))
+    assert found.contacts == pytest.approx(0.5 * 400 * rate, rel=0.1)
+    assert found.candidate.bias == 0.0 and found.decay == 0.0
+
+
 def test_cells_of_a_small_gas(tmp_path):
     """With one cell nothing is lost; with 27 of 15 the Enskog model loses collisions."""
     gas = {

@@ -59,13 +59,6 @@ def test_short_steps_do_not_start_from_what_long_ones_left():
     assert run.collisions.values[1] == alone.collisions.values[0]
 
 
-def test_all_pairs_at_every_event():
-    run = measured([EventDriven(search="pairs")], DISCS, interval=10.0)
-    events = int((run.collisions + run.wall_hits)[0])
-    assert events > 10
-    assert int(run.pair_tests[0]) == (events + 1) * 40 * 39 // 2
-
-
 def test_a_rival_is_timed_with_engines_of_its_own():
     """The same gas, searched in all boxes instead of those within reach: from the same state."""
     near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
