@@ -145,3 +145,14 @@ def test_a_real_well_holds_as_many_as_it_must(tmp_path):
     assert 1.0001 < float(dataset["length"]) / (0.2 * float(dataset["ratio"]) / expected) < 1.001
     with pytest.raises(ValueError, match="blocks: 31"):
         adsorption.measure([one], SETTINGS | {"blocks": 31})
+
+
+def test_the_coverage_of_a_layer_is_compared_with_that_of_discs():
+    wall = Wall(point("monolayer"))
+    far, held = 0.01 * (wall.outside - 2.0 * wall.sigma) * wall.area, 25.0
+    for _ in range(50):  # until the coverage is that of discs at the activity which it gives the layer
+        held /= wall.filling(held, 1e9, far)
+    assert wall.filling(held, 1e9, far) == pytest.approx(1.0)
+    plain = packing_fraction_at(wall.activity(far), 2)
+    assert 1.002 < wall.coverage(held) / plain < 1.006  # more than with the pressure alone, by first order
+    assert 1.002 < 1.0 / wall.filling(held, 40.0, far) < 1.006  # a small gas leaves the layer more
