@@ -106,6 +106,15 @@ def test_a_mixture_of_hit_and_never_hit_particles_is_told_apart(stored):
     assert (ds["density"].values * widths).sum(axis=-1) == pytest.approx(np.ones((2, 2)), abs=2e-3)
 
 
+def test_the_smaller_group_takes_the_scatter_of_both():
+    rng = np.random.default_rng(3)
+    few, many = rng.normal(0.0, 1.0, (2, 5)), rng.normal(7.0, 1.0, (400, 5))
+    for (_, errors), count in zip(speeds.shared_means([few, many]), (2, 400), strict=True):
+        assert errors * np.sqrt(count) == pytest.approx(np.ones(5), rel=0.15)
+    with pytest.raises(ValueError):
+        speeds.shared_means([few[:1], many[:1]])
+
+
 def test_other_scenes_or_times_are_refused(stored):
     rng = np.random.default_rng(4)
     one, other = point(), point(experiment="other", count=100)
