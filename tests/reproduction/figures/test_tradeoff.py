@@ -201,6 +201,14 @@ def test_the_cheapest_choice_is_the_least_biased_one_where_none_reaches():
     assert parts[:, 0, 1].tolist() == [0.01, 0.001, 0.001] and costs[2, 0, 0] == math.inf
 
 
+def test_what_the_size_leaves_falls_with_it():
+    small, large = (Gas(3, 0.3, count, 1.0, 1.0) for count in (1000, 8000))
+    for name in tradeoff.OBSERVABLES:
+        assert 0.0 < tradeoff.finite_size(large, name) < tradeoff.finite_size(small, name) < 0.01
+    (wave, lost), (speeds, whole) = tradeoff.decay_of(small, "D"), tradeoff.decay_of(small, "Z")
+    assert wave > speeds and whole == 1.0 and 0.05 < lost < 0.2
+
+
 def test_steps_of_a_fifth_of_a_free_time():
     """16 / (75 pi) is for the viscosity, 4 / (27 pi) for D, of (c step / l)^2."""
     step = 0.2 / float(theory.collision_rate(0.001, 3))
