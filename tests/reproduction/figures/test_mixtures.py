@@ -1,13 +1,17 @@
 """Runs beside theories of mixtures, settings of points, and the comparison of two theories."""
 
+import math
+
 import numpy as np
 import pytest
+from reproduction.claims.data import judged
 from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart import theory
 from gaspart.reproduction.figures import mixtures
 from gaspart.reproduction.points.point import Point
+from gaspart.reproduction.table import from_rows
 
 GAS = {
     "dimension": 3, "count": 200, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
@@ -68,3 +72,25 @@ def test_keys_that_need_or_exclude_each_other(key, settings):
     given = {name: value for name, value in (GAS | settings).items() if value is not None}
     with pytest.raises(gp.SceneError, match=rf"^experiments\.mixture\.{key} = "):
         _ = Point("mixture", "one", "simulate", given, "results", 1).scene
+
+
+@pytest.mark.parametrize(
+    ("starling", "boublik", "verdict", "ratio"),
+    [(1e-4, -3e-4, "reproduced", 1.0 / 3.0), (3e-4, 1e-4, "source in error", 3.0)],
+)
+def test_the_comparison_of_1999_is_one_of_rms_deviations(starling, boublik, verdict, ratio):
+    theories = {
+        "boublik": 2.0 / (1.0 + boublik),
+        "starling": 2.0 / (1.0 + starling),
+        "linear": 2.0,
+        "santos": 2.0,
+    }
+    row = {"dimension": 3, "packing_fraction": 0.4, "size_ratio": math.nan, "polydispersity": 0.3}
+    row |= {"Z": 2.0, "Z_error": 4e-5, "Z_freedom": 20.0, **theories}
+    claims = [one for one in mixtures.claims(from_rows("point", [row] * 4)) if "rms deviation" in one.claim]
+    assert set(judged(claims).values()) == {verdict}
+    (claim,) = claims
+    assert claim.measured.value == pytest.approx(ratio)
+    # of the ratio against each of the four deviations, whose errors are independent
+    slope = (1.0 / starling - 1.0 / boublik) * ratio / 4.0
+    assert claim.measured.error == pytest.approx(abs(slope) * 2e-5 * np.sqrt(4.0), rel=1e-2)
