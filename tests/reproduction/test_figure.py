@@ -1,23 +1,21 @@
 import os
-from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
-from gaspart import run, theory
+from gaspart import theory
 from gaspart.errors import SceneError
 from gaspart.reproduction.figure import (
     COUNTED,
     Series,
     combine,
     content_key,
-    find_parts,
     pressure,
     runs,
     series_of,
 )
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.registry import families, home
 
 
 def small_point(tmp_path, **settings):
@@ -28,20 +26,10 @@ def small_point(tmp_path, **settings):
     return Point("test", "single", "simulate", values | settings, str(tmp_path), 7)
 
 
-def simulate(point):
-    schedule = point.schedule
-    for k in range(point.replicas):
-        path = point.replica_path(k)
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        times = schedule.duration, schedule.sample_interval
-        kept = {key: point.settings.get(key) for key in ("follow", "keep")}
-        run(point.scene, point.engine, point.seed(k), *times, path, **kept)
-
-
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
     point = small_point(tmp_path_factory.mktemp("points"))
-    simulate(point)
+    simulated(point)
     return point, pressure(point)
 
 
@@ -51,12 +39,12 @@ def test_of_an_exact_temperature_neither_all_particles_nor_velocities_are_needed
     settings = {"exact_temperature": True, "collisions_per_particle": 20, "replicas": 1}
     whole, part = small_point(tmp_path / "a", **settings), small_point(tmp_path / "b", **settings, **kept)
     for point in (whole, part):
-        simulate(point)
+        simulated(point)
     (expected,), (found,) = ([series_of(run) for run in runs(point)] for point in (whole, part))
     assert found.z == pytest.approx(expected.z, rel=1e-9)
     assert found.rate == pytest.approx(expected.rate, rel=1e-9)
     drawn = small_point(tmp_path / "c", **settings | {"exact_temperature": False}, **kept)
-    simulate(drawn)
+    simulated(drawn)
     with pytest.raises(SceneError, match=next(iter(kept))):
         [series_of(run) for run in runs(drawn)]
 
@@ -121,8 +109,3 @@ def test_a_key_of_content_follows_files_and_settings_alone(tmp_path):
     assert content_key([file, folder], {"bins": 3}) != key != content_key([folder, file], {"bins": 4})
     (folder / "replica-0.nc").write_bytes(b"other frames")
     assert content_key([folder, file], {"bins": 3}) != key
-
-
-@pytest.mark.parametrize("figure", families())
-def test_the_parts_of_each_figure_are_found(figure):
-    assert callable(find_parts(home(families()[figure]), figure).measure)

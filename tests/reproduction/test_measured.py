@@ -55,12 +55,6 @@ def test_every_quantity_has_its_unit_and_two_digits_of_its_error(folder):
         assert contact == pytest.approx((z - 1.0) / (2.0 ** (dimension - 1) * 0.1), rel=1e-3)
 
 
-def test_a_missing_measurement_is_an_error(folder):
-    (folder / "conductivity.nc").unlink()
-    with pytest.raises(OSError, match="conductivity"):
-        list(reference_values(folder))
-
-
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_table_of_the_package_is_near_theory(dimension):
     """Z by its errors, and dilute gases' viscosity and conductivity to some per cent."""

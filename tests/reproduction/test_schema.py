@@ -8,11 +8,9 @@ from pathlib import Path
 import jsonschema
 import pytest
 from malformed import SCENES
-from reference import in_words, pages
+from reference import pages
 
 from gaspart.reproduction.config import check, merged_with_default, scene_schema, schema
-from gaspart.reproduction.points import point_keys
-from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.modules import closure
 from gaspart.reproduction.registry import families, home, settings
 from gaspart.yaml_text import read_yaml
@@ -76,11 +74,8 @@ def test_the_schema_of_scenes_accepts_the_scene_files(path):
     [
         (("colour",), "red"),
         (("species", 0, "mass"), 0.0),
-        (("species", 0, "count"), 2.5),
-        (("species", 0, "arrangement"), "neat"),
         (("particles", 0, "position"), [1.0]),
         (("container", "boundary"), "fog"),
-        (("faces", "x_low", "kind"), "cold"),
         (("faces", "left"), {"kind": "thermal", "temperature": 1.0}),
         (("restitution", "normal"), 1.5),
     ],
@@ -100,25 +95,3 @@ def test_the_schema_of_configs_is_the_one_that_is_checked():
     config, _ = merged_with_default(ROOT / "config/smoke.yaml")
     check(config)  # which removes what is null
     jsonschema.validate(config, schema())
-
-
-def test_the_tables_of_the_engines_follow_from_the_keys():
-    assert set(point_keys.ENGINE_KEYS["event"]) == {"search", "boxes_per_side", "boxes_per_particle"}
-    assert {"time_step", "skin", "boxes_per_side"} <= set(point_keys.ENGINE_KEYS["step"])
-    whole = {"dimension", "count", "samples", "steps", "attempts", "follow", "lags", "frames"}
-    assert whole | {"replicas", "passes", "threads", "copies"} == config_keys.WHOLE
-
-
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        (config_keys.POINT["packing_fraction"], "number > 0 and < 1"),
-        (config_keys.POINT["search"], "`automatic`, `boxes`, `lists`, `direct`, `pairs`"),
-        (config_keys.POINT["side"], "number > 0 or list of 2 to 3 values (number > 0)"),
-        (config_keys.POINT["replicas"], "whole number ≥ 1 and ≤ 10000"),
-        (settings()["virial_discs"]["fits"]["items"]["properties"]["held"], "`true` or `false`"),
-        (settings()["stability_extremes"]["experiments"], "empty list"),
-    ],
-)
-def test_a_kind_in_words(kind, words):
-    assert in_words(kind) == words

@@ -126,34 +126,22 @@ def test_values_of_a_scene_file_and_of_the_engine_vary(tmp_path):
         ({"over": {"packing_fracton": [0.1]}}, "over.packing_fracton = .*did you mean packing_fraction"),
         ({"over": {"packing_fraction": [2.0]}}, "over.packing_fraction = 2.0: must be less than 1"),
         ({"over": {"packing_fraction": []}}, r"over.packing_fraction = \[\]: must not be empty"),
-        ({"over": {"packing_fraction": [0.1, 0.1]}}, "every point of a grid must be different"),
         ({"over": {"count": [50, 50.0]}}, "over.count = .*: every point of a grid must be different"),
         ({"over": {"duration": [1.0]}}, "over.duration = .*: is an argument of a sweep"),
         ({"over": {"packing_fraction": [0.1], "species.0.mass": [2.0]}}, "replaces a value of a scene file"),
         ({"observables": ["Q"]}, "observable = 'Q': unknown observable"),
         ({"duration": None}, "duration = None: must be given, or until"),
-        ({"duration": -1.0}, "duration = -1.0: must be positive"),
         ({"at_most": 3.0}, "at_most = 3.0: needs until"),
-        ({"duration": None, "until": gp.Accuracy("Z", 0.1)}, "at_most = None: must be positive"),
         (
             {"duration": None, "at_most": 9.0, "until": gp.Accuracy("Z", 0.1, start=1.0)},
             "until.start = 1.0: is the equilibration of a sweep",
         ),
         ({"replicas": 0}, "replicas = 0"),
-        ({"workers": 0}, "workers = 0"),
         ({"equilibration": -1.0}, "equilibration = -1.0: must not be negative"),
         ({"observables": ["pressure"]}, "observables = 'pressure': cannot be measured: .*has no walls"),
         (
             {"scene": gp.Scene(gp.Container((8.0, 9.0, 8.0)), [gp.Species(60, 0.5)])},
             "over.packing_fraction = .*needs a container with equal sides",
-        ),
-        (
-            {
-                "scene": gp.Scene(
-                    gp.Container((8.0, 8.0)), particles=[gp.Particle((4.0, 4.0), (1.0, 0.0), 0.5)]
-                )
-            },
-            "over.packing_fraction = .*varies one species alone in a container",
         ),
         (
             {"scene": gp.Scene(gp.Container((8.0, 8.0)), [gp.Species(6, 0.5)], gravity=(0.0, -1.0))},
@@ -265,11 +253,8 @@ def test_what_no_point_can_have_is_refused_before_any_is_run(tmp_path):
 @pytest.mark.parametrize(
     ("values", "coordinate"),
     [
-        (np.arange(40, 80, 20), [40, 60]),
-        (range(40, 80, 20), [40, 60]),
         (iter([40, 60]), [40, 60]),
         (xr.DataArray([40, 60]), [40, 60]),
-        (np.int64(40), [40]),
         (40, [40]),
     ],
 )

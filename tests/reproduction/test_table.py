@@ -49,11 +49,6 @@ def test_columns_are_attributes_and_so_are_those_of_a_row():
         _ = rows.pressure
 
 
-def test_an_error_of_other_dimensions_is_not_that_of_the_column():
-    dataset = gases().assign(held=("point", [0, 1, 1]), held_error=(("point", "bin"), np.ones((3, 3))))
-    assert Table(dataset, "point").held.tolist() == [0, 1, 1]
-
-
 def test_tables_with_different_rows_have_one_data_set():
     dataset = merge_with_prefixes(gas=from_rows("gas", [{"eta": 1.0}]), point=gases()).assign_attrs(order=4)
     rows, none = Table.from_prefixed(dataset, "point"), Table.from_prefixed(dataset, "other")
@@ -75,13 +70,6 @@ def test_rows_are_chosen_sorted_and_grouped():
     assert [part.eta.tolist() for _, part in rows.by(rows.eta > 0.2)] == [[0.125], [0.375, 0.25]]
     assert not rows[rows.eta > 1.0] and not list(rows[:0].by("dimension"))
     assert not Table(xr.Dataset(), "point") and list(Table(xr.Dataset(), "point")) == []
-
-
-def test_columns_are_added():
-    rows = Table(gases(), "point").assign(
-        name=["a", "b", "c"], excess=Estimate([1, 2, 3], 0.5), engine="event"
-    )
-    assert rows.excess[2] == Estimate(3.0, 0.5) and rows[2].name == "c" and rows[0].engine == "event"
 
 
 def test_rows_lie_along_the_dimension_of_the_table_first():

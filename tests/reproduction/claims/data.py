@@ -12,8 +12,3 @@ def claim(value=1.0, error=0.01, required=0.02, expected=1.0, text="Z at 0.1", *
 def judged(claims):
     """Verdict of each claim, by its text."""
     return dict(zip((claim.claim for claim in claims), judge(claims), strict=True))
-
-
-def about(claims, text):
-    """The verdicts of the claims that state a text."""
-    return {verdict for claim, verdict in judged(claims).items() if text in claim}

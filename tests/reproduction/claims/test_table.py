@@ -61,13 +61,6 @@ def test_table_goes_out_and_comes_back(tmp_path):
     assert claims.counts(claims.read(path))["test"] == {"agrees": 2, "disagrees": 2}
 
 
-def test_collecting_nothing_gives_an_empty_table(tmp_path):
-    table = claims.collect([])
-    assert tuple(table.columns) == claims.COLUMNS
-    table.to_csv(tmp_path / "claims.csv", index=False)
-    assert claims.summary(tmp_path / "claims.csv") == "0 claims"
-
-
 def test_two_claims_with_one_text_are_refused(tmp_path):
     with pytest.raises(ValueError, match="occurs twice"):
         claims.write(tmp_path / "a.csv", "figure", [claim(), claim()])

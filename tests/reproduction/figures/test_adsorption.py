@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduction.made import simulated
 from scipy.spatial import cKDTree
 from scipy.special import gammaln
 
@@ -46,13 +47,6 @@ def test_scaled_particle_theory_is_exact_to_the_second_order_and_near_the_refere
         assert slope == pytest.approx((1.0 + eta) / (1.0 - eta) ** 3, rel=1e-6)
         reference = packing_fraction_at(adsorption.scaled_particle_activity(eta), 2)
         assert reference == pytest.approx(eta, rel=0.015)
-
-
-def test_the_flux_is_normalised_and_its_slow_share_is_its_integral():
-    v = (np.arange(80000) + 0.5) * 1e-4
-    density = adsorption.flux_density(v) * 1e-4
-    assert density.sum() == pytest.approx(1.0, rel=1e-8)
-    assert adsorption.slow_flux_share(1.0) == pytest.approx(density[v < 1.0].sum(), rel=1e-6)
 
 
 def test_a_single_sphere_in_front_of_a_layer_closes_half_a_ball():
@@ -115,15 +109,6 @@ def point(name, folder="results/points", **settings):
     return Point("held", "single", "simulate", {"equilibration": 20.0} | settings, str(folder), 1)
 
 
-def test_what_holds_is_read_from_the_scene():
-    ideal, layer, sticky = (Wall(point(name)) for name in ("ideal", "monolayer", "sticky"))
-    assert (ideal.kind, layer.kind, sticky.kind) == ("ideal", "layer", "sticky")
-    assert (ideal.slow, sticky.slow) == (1.0, 1.0)
-    assert ideal.outside == pytest.approx(1.975 - 0.2)
-    assert (layer.width, layer.outside, layer.area) == (0.1, pytest.approx(38.9), 100.0)
-    assert (sticky.width, sticky.depth, sticky.outside) == (0.0, 0.0, 9.0)
-
-
 def test_an_ideal_gas_in_frames_is_counted_as_it_was_made():
     """Independent frames of a Maxwellian gas, in the Boltzmann distribution of the well."""
     rng = np.random.default_rng(4)
@@ -150,11 +135,7 @@ def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
 
 @pytest.mark.thorough
 def test_a_real_well_holds_as_many_as_it_must(tmp_path):
-    one = point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0})
-    path = one.replica_path(0)
-    Path(path).parent.mkdir(parents=True)
-    times = one.schedule
-    gp.run(one.scene, one.engine, one.seed(0), times.duration, times.sample_interval, path)
+    one = simulated(point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0}))
     dataset = adsorption.measure([one], SETTINGS).isel(point=0)
     expected = well_ratio(1.0, 0.2, 1.975 - 0.2)
     error = float(dataset["log_ratio_error"])

@@ -9,7 +9,6 @@ import pytest
 from reproduction.made import made
 
 import gaspart as gp
-from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.figure import runs
 from gaspart.reproduction.figures.beds import (
@@ -80,13 +79,6 @@ def test_piles_and_flows_are_read(tmp_path):
         assert ds["rate"][n] == pytest.approx(-slope, rel=0.3)
 
 
-@pytest.mark.thorough
-def test_a_flow_that_ends_too_early_is_refused(tmp_path):
-    point = made(tmp_path, "short", hopper(), duration=1.0, samples=4, boxes_per_side=[8, 140], replicas=1)
-    with pytest.raises(ValueError, match="duration"):
-        measure_settling([point], SETTLING)
-
-
 def test_a_law_is_fitted_to_its_own_numbers():
     width = np.array([4.0, 6.0, 9.0, 14.0])
     found = fit_discharge(width, Estimate(np.log(0.7 * (width - 1.2) ** 1.3), 0.01, 5))
@@ -100,34 +92,6 @@ def test_a_law_is_fitted_to_its_own_numbers():
 
 
 BED = {"bins": 8, "highest": 4.0}
-
-
-def bed(waveform, count=20):
-    """Discs that are heated by a floor of the speed 1."""
-    return gp.Scene(
-        gp.Container((10.0, 400.0), ("periodic", "wall")),
-        [gp.Species(count, 0.5, temperature=20.0)],
-        gravity=(0.0, -1.0),
-        restitution=gp.Restitution(0.9, contact_duration=0.0),
-        faces={"y_low": gp.Vibrating(0.05, 0.1, waveform)},
-    )
-
-
-@pytest.mark.thorough
-def test_the_flows_of_energy_and_the_profile_of_a_bed(tmp_path):
-    """A sawtooth gives its speed times the weight; what it gives is lost in contacts."""
-    point = made(tmp_path, "bed", bed("sawtooth"), duration=600.0, samples=60, equilibration=200.0)
-    ds = measure_beds([point], BED).isel(bed=0)
-    assert (ds["sine"], ds["restitution"], ds["layers"], ds["speed"]) == (0, 0.9, 1.9, pytest.approx(1.0))
-    assert ds["packing_fraction"] == pytest.approx(0.25 * np.pi * 2.0 / ds["temperature"])
-    assert ds["given"] == pytest.approx(1.0, abs=4.0 * float(ds["given_error"]) + 1e-3)
-    assert ds["given_error"] < 0.05
-    assert ds["lost"] == pytest.approx(float(ds["given"]), abs=0.1)
-    height = theory.bed_height(float(ds["packing_fraction"]))
-    assert ds["height"] == pytest.approx(height, abs=4.0 * float(ds["height_error"]) + 0.1)
-    assert 2.0 < ds["temperature"] < 20.0
-    assert float(ds["density"].sum() * 0.5) == pytest.approx(1.0, abs=0.1)
-    assert ds["density"][0] > 2.0 * ds["density"][4] > 0.0
 
 
 @pytest.mark.interpreted

@@ -32,11 +32,6 @@ def test_counts_of_points(dimension, per_side):
     assert (1.0 + visits).mean() / 2.0 == pytest.approx(expected, rel=0.01)
 
 
-def test_one_box_holds_all_pairs():
-    assert partition.expected_pair_tests(1000, 1, 3, 50.0, 0.0) == (499500.0, 0.0)
-    assert partition.expected_box_visits(1, 3, 50.0, 0.5) == 1.0
-
-
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("reach", [0.2, 0.9])
 def test_boxes_in_reach(dimension, reach):
@@ -65,13 +60,3 @@ def test_share_of_contacts_in_a_box(dimension, width):
     share = ((others >= 0.0) & (others < width)).all(axis=1).mean()
     expected = partition.share_of_contacts_in_a_box(width, 1.0, dimension)
     assert share == pytest.approx(expected, abs=4.0 * np.sqrt(expected / 20000))
-
-
-def test_touched_boxes_do_not_suffice():
-    """Two overlapping spheres across an edge, neither of which touches the box of the other's centre."""
-    radius = 1.0
-    one, other = np.array([-1.01, -0.01]), np.array([0.01, 1.01])  # boxes: the quadrants
-    assert np.linalg.norm(one - other) < 2.0 * radius
-    for centre, sign in ((one, 1.0), (other, -1.0)):
-        into = np.maximum(-sign * centre, 0.0)  # from the centre to the nearest point of the other's quadrant
-        assert np.linalg.norm(into) > radius

@@ -14,14 +14,10 @@ from gaspart.reproduction.points.point import Point
 def point(replicas=300, boundary="periodic", **more):
     """A point whose scene file is replaced by `motion`'s scene in these tests."""
     settings = {
-        "scene": "config/scenes/brownian_heavy.yaml",
-        "scene.container.boundary": boundary,
-        "scene.species.0.count": 900,
-        "displacements": True,
-        "duration": 60.0,
-        "samples": 300,
+        "scene": "config/scenes/brownian_heavy.yaml", "scene.container.boundary": boundary,
+        "scene.species.0.count": 900, "displacements": True, "duration": 60.0, "samples": 300,
         "replicas": replicas,
-    }
+    }  # fmt: skip
     return Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
 
 
@@ -80,28 +76,6 @@ def test_friction_diffusion_and_equipartition_of_known_paths(made_up):
     assert float(ds["time"][-1]) == pytest.approx(8.0)
     late = np.nanargmin(np.abs(ds["time"].values - 5.0))
     assert float(ds["msd"][late]) == pytest.approx(4.0, rel=0.1)
-
-
-@pytest.mark.thorough
-def test_a_light_particle_is_expected_to_move_as_the_linear_boltzmann_equation_states(made_up):
-    """In Maxwell's gas near Langevin's equation; with less energy, and less far, in one of equal speeds."""
-    equal_speeds = {"scene.species.0.temperature": None, "scene.species.0.speed": 3**0.5}
-    found = {}
-    for name, gas in (("maxwell", {}), ("equal", equal_speeds)):
-        light = {"replicas": 40, "boundary": "wall", "scene.particles.0.mass": 1.0, **gas}
-        motion = Sphere(point(**light))
-        unit = 1.0 / motion.friction
-        chosen = point(**light, duration=24.0 * unit, equilibration=6.0 * unit, samples=240)
-        assert motion.is_light
-        made_up(chosen, paths(motion, 40))
-        found[name] = measure_msd([chosen], {}).isel(point=0)
-        assert 0.001 < float(found[name]["expected_friction_error"] / motion.friction) < 0.02
-    maxwell, equal = found["maxwell"], found["equal"]
-    assert float(maxwell["expected_equipartition"]) == pytest.approx(1.0, abs=0.012)
-    assert float(maxwell["expected_friction"] / maxwell["friction"]) == pytest.approx(0.9935, abs=0.015)
-    assert float(equal["expected_equipartition"]) == pytest.approx(0.925, abs=0.015)
-    assert float(equal["expected_friction"] / equal["friction"]) == pytest.approx(0.963, abs=0.015)
-    assert float(equal["expected_vacf"][0]) == pytest.approx(float(equal["expected_equipartition"]), rel=1e-6)
 
 
 def test_between_walls_nothing_is_given_back():

@@ -1,6 +1,5 @@
 """Ratios to the scene without a feature, and speeds on several cores, of small jobs and of made-up times."""
 
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -10,11 +9,9 @@ import xarray as xr
 from numba import config
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.errors import SceneError
 from gaspart.reproduction.figures import cost
 from gaspart.reproduction.figures._timings import SYSTEMATIC
 from gaspart.reproduction.jobs.measure_cost import measure_cost
-from gaspart.reproduction.points import jobs
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table
 
@@ -49,19 +46,6 @@ def test_costs_are_those_of_the_plain_scene_times_a_ratio(priced):
     assert ds["ratio_freedom"].values.tolist() == [1.0] * 3
     assert np.all(ds["ratio_error"] > 0.0) and np.all(ds["ratio"] > 0.0)
     assert np.all(ds["pair_tests"] > 1.0)
-
-
-def test_the_scene_beside_lacks_the_feature_and_is_timed_as_often(priced):
-    with xr.open_dataset(priced[2].path) as run:
-        assert run.sizes == {"partition": 2, "repeat": 2}
-        assert run["collisions"].values[0] != run["collisions"].values[1]
-    with xr.open_dataset(priced[0].path) as run:  # the plain scene beside itself
-        assert run["collisions"].values[0] == run["collisions"].values[1]
-
-
-def test_only_costs_have_a_scene_beside_them(priced):
-    with pytest.raises(SceneError, match="without"):
-        jobs.validate(replace(priced[0], job="simulate"))
 
 
 def test_scatter_between_jobs_is_the_uncertainty():
@@ -145,11 +129,6 @@ def test_the_model_finds_the_shares_that_made_the_speeds(serial, overhead):
     found = fitted(cores, count, cost.speed_up(cores, count, serial, overhead))
     assert found["serial"].value == pytest.approx(serial, abs=1e-6)
     assert found["overhead"].value == pytest.approx(overhead, abs=1e-2)
-
-
-def test_speeds_above_the_number_of_cores_have_no_serial_share():
-    found = fitted([2, 2], [1e4, 1e6], [2.1, 2.2])
-    assert found["serial"] == found["overhead"] == Estimate(0.0)
 
 
 def test_enskog_is_modelled_where_two_threads_share_its_collisions():

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.reproduction.figures import couette
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.scene import Scene
 
@@ -43,26 +41,6 @@ def point(tmp_path, monkeypatch):
     return of
 
 
-def measured(one):
-    Path(one.path).parent.mkdir(parents=True)
-    simulate(Path(one.path), **one.arguments)
-    return couette.measure([one], SETTINGS).isel(point=0)
-
-
-@pytest.mark.thorough
-def test_a_flow_has_the_stress_of_its_knudsen_number(point):
-    """0.286 of free flight's by the viscosity with slip, and a few per cent more by heating."""
-    row = measured(point("flows", "u1.5", between_walls(1.5), **DSMC))
-    assert row["part"] == "flows" and row["engine"] == "DSMC"
-    assert abs(float(row["knudsen"]) - 0.2) < 0.002 and float(row["speed"]) == 1.5
-    assert abs(float(row["stress"]) - 0.29) < 0.02 and float(row["stress_error"]) < 0.006
-    assert abs(float(row["viscosity"]) - 1.0) < 4.5 * float(row["viscosity_error"]) + 0.05
-    assert abs(float(row["pressure"]) - 1.0) < 0.05
-    velocity = row["flow"].values
-    assert (np.diff(velocity) > -0.03).all() and abs(velocity.sum()) < 0.5
-    assert float(row["reduced_rate"]) > 0.1
-
-
 def test_numbers_of_an_exact_flow(point):
     """A linear flow with the slip that theory states, without heating or noise."""
     flow = couette.Flow(point("flows", "exact", between_walls(1.0), **DSMC), SETTINGS | {"bins": 40})
@@ -89,7 +67,8 @@ def test_a_sheared_gas_has_enskogs_viscosity(point):
         "faces": {"y_high": {"kind": "lees_edwards", "shear_rate": 0.15}},
     }
     settings = {"engine": "event", "duration": 200, "equilibration": 20, "samples": 80}
-    row = measured(point("sheared", "s", scene, lags=2, stress=True, replicas=2, **settings))
+    one = simulated(point("sheared", "s", scene, lags=2, stress=True, replicas=2, **settings))
+    row = couette.measure([one], SETTINGS).isel(point=0)
     assert row["part"] == "sheared" and abs(float(row["packing_fraction"]) - 0.1) < 1e-4
     assert abs(float(row["viscosity"]) - 1.0) < 4.5 * float(row["viscosity_error"]) < 0.3
     assert 0.05 < float(row["reduced_rate"]) < 0.12

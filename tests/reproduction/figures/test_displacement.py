@@ -12,7 +12,7 @@ from reproduction.made import simulated
 from scenes import centred
 
 from gaspart import theory
-from gaspart.analysis.motion import Curves, correlate, line, mask_between
+from gaspart.analysis.motion import Curves, correlate
 from gaspart.errors import SceneError
 from gaspart.reproduction.figures import _displacement, msd_discs, msd_spheres, velocity_autocorrelation
 from gaspart.reproduction.points.point import Point
@@ -22,20 +22,10 @@ from gaspart.trajectory.correlator import SUMS
 def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):
     """One point of a grid at temperature 1; nothing of it is run."""
     settings = {
-        "dimension": dimension,
-        "count": count,
-        "radius": 0.5,
-        "packing_fraction": packing_fraction,
-        "boundary": "periodic",
-        "arrangement": "lattice",
-        "temperature": 1.0,
-        "engine": "event",
-        "collisions_per_particle": 120,
-        "samples": 120,
-        "displacements": True,
-        "lags": 120,
-        "replicas": 4,
-    }
+        "dimension": dimension, "count": count, "radius": 0.5, "packing_fraction": packing_fraction,
+        "boundary": "periodic", "arrangement": "lattice", "temperature": 1.0, "engine": "event",
+        "collisions_per_particle": 120, "samples": 120, "displacements": True, "lags": 120, "replicas": 4,
+    }  # fmt: skip
     return Point(experiment, name, "simulate", settings | more, "results/points", 1)
 
 
@@ -94,13 +84,6 @@ def fill(stored, one, seed, **unit):
     rng = np.random.default_rng(seed)
     for path in one.replica_paths:
         stored[path] = langevin(rng, one, **unit)
-
-
-def test_a_line_needs_four_points():
-    x = np.arange(10.0)
-    assert line(x, 3.0 * x + 1.0) == pytest.approx(3.0)
-    assert np.isnan(line(x[:3], x[:3]))
-    assert mask_between(x, 2.0, 4.0).sum() == 3
 
 
 @pytest.mark.parametrize("unit", [{}, {"drift": 7.0}, {"length": 2.0, "speed": 3.0}], ids=str)
@@ -167,13 +150,6 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     assert float(ds["fit_to"]) == pytest.approx(float(ds["sound_time"]))
 
 
-def test_a_point_without_lags_is_refused():
-    one = point()
-    del one.settings["lags"]
-    with pytest.raises(SceneError, match="experiments.msd.lags.*is required"):
-        msd_spheres.measure([one], {})
-
-
 @pytest.mark.parametrize(
     ("change", "key"),
     [
@@ -188,15 +164,6 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
     fill(stored, one, seed=6)
     with pytest.raises(SceneError, match=key):
         msd_spheres.measure([one], {})
-
-
-def test_a_real_gas_diffuses_as_enskog_says(tmp_path):
-    one = point(count=108, packing_fraction=0.03, equilibration=10, replicas=3)
-    one = simulated(replace(one, root=str(tmp_path)))
-    ds = msd_spheres.measure([one], {}).isel(point=0)
-    assert float(ds["diffusion"]) == pytest.approx(float(theory.enskog_diffusion(0.03, 3)), rel=0.15)
-    theoretical = theory.enskog_mean_squared_displacement(ds["time"].values, 0.03, 3)
-    assert ds["msd"].values[1] == pytest.approx(theoretical[1], rel=0.03)
 
 
 def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
 from gaspart.reproduction.figures import dsmc
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import Table
 
@@ -17,14 +17,11 @@ GAS = {
 
 
 @pytest.mark.filterwarnings("ignore:gaspart")
-def test_coefficients_of_a_gas_are_near_their_exact_values(tmp_path, monkeypatch):
+def test_coefficients_of_a_gas_are_near_their_exact_values(tmp_path):
     """One cell of half a mean free path: viscosity 1.023 times, diffusion once."""
-    monkeypatch.chdir(tmp_path)
     made = {"fluxes": {"stress": True}, "paths": {"displacements": True}}
-    points = [Point(name, "one", "simulate", GAS | more, "results", 1) for name, more in made.items()]
-    for one in points:
-        (tmp_path / one.path).parent.mkdir(parents=True)
-        simulate(tmp_path / one.path, **one.arguments)
+    root = str(tmp_path)
+    points = [simulated(Point(name, "one", "simulate", GAS | more, root, 1)) for name, more in made.items()]
     ds = dsmc.measure(points, {"parts": {name: [name] for name in made}, "blocks": 4})
     width = float(ds["width"][0])
     assert width == pytest.approx(0.5, abs=0.01)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
-from gaspart import run, theory
+from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.figures import film
 from gaspart.reproduction.points.point import Point
@@ -49,11 +48,7 @@ def test_a_real_slit_obeys_the_contact_theorem(tmp_path):
         "boundary": ["periodic", "periodic", "wall"], "arrangement": "lattice",
         "duration": 120, "equilibration": 5, "samples": 256,
     }  # fmt: skip
-    point = Point("test", "single", "simulate", settings, str(tmp_path), 7)
-    path = point.replica_path(0)
-    Path(path).parent.mkdir(parents=True)
-    times = point.schedule
-    run(point.scene, point.engine, point.seed(0), times.duration, times.sample_interval, path)
+    point = simulated(Point("test", "single", "simulate", settings, str(tmp_path), 7))
     dataset = film.measure(
         [point], {"bulk_packing_fraction": 0.3, "insertions": 6400, "theory_widths": [2.0, 3.0, 2]}
     )

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
-from gaspart import run
 from gaspart.analysis.estimate import Estimate
 from gaspart.reproduction.figures import freezing_discs, freezing_spheres
 from gaspart.reproduction.figures._freezing import EQUILIBRIUM_LIMIT, disagreement, mean_and_drift, with_drift
 from gaspart.reproduction.points.points import points
 from gaspart.reproduction.table import entries
-from gaspart.scene.scene import Scene
 
 DISC_POINT = {
     "dimension": 2, "count": 64, "side": [8, 8 * 0.8660254037844386], "boundary": "periodic",
@@ -26,23 +25,17 @@ EDGE = (4.0 / 1.0375) ** (1.0 / 3.0)
 SLAB = {"count": 305, "side": [4 * EDGE, 4 * EDGE, 5 * EDGE], "arrangement": "slab"}
 
 
-def simulated(folder, experiments):
+def made_of(folder, experiments):
     """The points of made-up experiments, run."""
-    found = []
-    for name, (point, grid) in experiments.items():
-        config = {"seed": 1, "points": str(folder), "experiments": {name: {"point": point, "grid": grid}}}
-        for one in points(config, name):
-            recipe = one.parameters
-            (folder / one.experiment / one.name).mkdir(parents=True)
-            for path, seed in zip(one.replica_paths, recipe["seeds"], strict=True):
-                times = recipe["duration"], recipe["sample_interval"]
-                run(Scene.from_dict(recipe["scene"]), one.engine, tuple(seed), *times, path)
-            found.append(one)
-    return found
+    configs = {
+        name: {"seed": 1, "points": str(folder), "experiments": {name: {"point": point, "grid": grid}}}
+        for name, (point, grid) in experiments.items()
+    }
+    return [simulated(one) for name, config in configs.items() for one in points(config, name)]
 
 
 def test_discs_melt_and_stay(tmp_path):
-    points = simulated(tmp_path, {"discs": (DISC_POINT, {"packing_fraction": [0.74, 0.5]})})
+    points = made_of(tmp_path, {"discs": (DISC_POINT, {"packing_fraction": [0.74, 0.5]})})
     settings = {"shown": [0.5, 0.74], "furthest": 3, "bins": 30, "highest": 8}
     dataset = freezing_discs.measure(points, settings)
     assert dataset["start"].values.tolist() == ["crystal"]
@@ -58,26 +51,9 @@ def test_discs_melt_and_stay(tmp_path):
     assert bragg[1] > 4.0 * bragg[0]
 
 
-def test_discs_of_the_published_number_are_compared_and_not_drawn(tmp_path):
-    long = {"equilibration": 40, "duration": 60}  # of a lattice that melts
-    peer = {**DISC_POINT, **long, "count": 870, "side": [29, 30 * 0.8660254037844386]}
-    made = {
-        "discs": (DISC_POINT, {"packing_fraction": [0.5, 0.74]}),
-        "peers": (peer, {"packing_fraction": [0.68]}),
-    }
-    settings = {"shown": [0.74], "furthest": 3, "bins": 30, "highest": 8}
-    dataset = freezing_discs.measure(simulated(tmp_path, made), settings)
-    assert dataset["packing_fraction"].values == pytest.approx([0.5, 0.74])
-    assert dataset["compared_packing_fraction"].values == pytest.approx([0.68])
-    assert dataset["compared_pressure"].item() == pytest.approx(8.51, rel=0.03)
-    assert dataset["compared_pressure_error"].item() > 0.0
-
-
 def test_spheres_keep_to_their_branches(tmp_path):
     slab = {**SPHERE_POINT, **SLAB}
-    points = simulated(
-        tmp_path, {"bulk": (SPHERE_POINT, {"packing_fraction": [0.4, 0.6]}), "slab": (slab, {})}
-    )
+    points = made_of(tmp_path, {"bulk": (SPHERE_POINT, {"packing_fraction": [0.4, 0.6]}), "slab": (slab, {})})
     dataset = freezing_spheres.measure(points, {})
     assert dataset["crystalline"].values.tolist() == [[0, 1]]
     assert (dataset["Z"] / dataset["reference"]).values[0] == pytest.approx(1.0, abs=0.02)

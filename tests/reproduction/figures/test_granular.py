@@ -66,16 +66,6 @@ def test_rough_walls_mix_velocity_and_spin_as_theory_says(tmp_path):
         assert abs(row[name] - 1.0) < 4.0 * row[f"{name}_error"] < 0.2, name
 
 
-def test_between_rough_walls_the_start_must_be_maxwellian(tmp_path):
-    scene = gp.Scene(
-        gp.Container((40.0, 10.0), ("periodic", "wall")),
-        [gp.Species(2, 0.0001, speed=1.0)],
-        restitution=gp.Restitution(1.0, 1.0),
-    )
-    with pytest.raises(gp.SceneError, match="temperature"):
-        equipartition.measure([made(tmp_path, "walls", scene, duration=1.0, samples=1)], {"steady_from": 1.0})
-
-
 def test_an_inelastic_gas_cools_as_haff_says_and_the_number_variance_is_counted(tmp_path):
     points = [
         made(tmp_path, "haff", gas(restitution=gp.Restitution(0.8)), duration=200.0, samples=16),

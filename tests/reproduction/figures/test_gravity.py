@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart.reproduction.figures import _columns, gravity
@@ -45,17 +45,6 @@ SETTINGS |= {"source_collisions": 100.0, "source_temperature": 1.0, "source_shar
 SETTINGS |= {"columns": {"source": "column_source"}}
 
 
-def run(point, root):
-    """The point with its simulations made."""
-    made = replace(point, root=str(root))
-    times = made.schedule
-    for k, path in enumerate(made.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        scene, engine = made.scene, made.engine
-        gp.run(scene, engine, made.seed(k), times.duration, times.sample_interval, path)
-    return made
-
-
 def test_the_profile_of_an_ideal_column_is_barometric():
     place, stretch = ideal_column(np.random.default_rng(1), 400, np.ones(100))
     density, energy, pressure = _columns.profile(place, stretch, 8)
@@ -76,35 +65,6 @@ def test_the_pressure_is_the_mean_over_each_bin_of_the_weight_above():
     # Below 0.5 all six of mass are above; from 3.25 on nothing is.
     above = pressure * place.width - stretch.ceiling
     assert above == pytest.approx([(0.5 * 6 + 0.5 * 5 + 1.0 * 4) / 2.0, 1.25 * 4 / 2.0])
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("boundary", ["wall", "periodic"])
-def test_a_column_of_two_kinds_balances_and_separates(tmp_path, boundary):
-    scene = gp.Scene(
-        gp.Container((6.0, 12.0), (boundary, "wall")),
-        [gp.Species(40, 0.05, temperature=0.5), gp.Species(40, 0.05, mass=3.0, temperature=0.5)],
-        gravity=(0.0, -0.2),
-    )
-    scene.to_file(tmp_path / "scene.yaml")
-    made = run(point(tmp_path / "scene.yaml", duration=2000.0, equilibration=400.0, samples=400), tmp_path)
-    ds = gravity.measure_two_kinds([made], SETTINGS | {"blocks": 10}).isel(point=0)
-    assert float(ds["imbalance"]) < 1e-9
-    assert float(ds["range_ratio"][0]) == pytest.approx(1.0, abs=0.1)
-    for name in ("slope_ratio", "exchange_ratio", "mean_height_ratio", "species_temperature_ratio"):
-        error = ds[f"{name}_error"].values
-        assert np.all(error < 0.15), name
-        assert np.all(np.abs(ds[name].values - 1.0) < 4.5 * error + 0.02), name
-    assert float(ds["density"].sel(species=1)[0]) > 2.0 * float(ds["density"].sel(species=1)[-1])
-
-
-@pytest.mark.interpreted
-def test_fewer_frames_than_stretches_are_refused(tmp_path):
-    scene = gp.Scene(gp.Container((4.0, 4.0)), [gp.Species(5, 0.1, temperature=1.0)], gravity=(0.0, -1.0))
-    scene.to_file(tmp_path / "scene.yaml")
-    made = run(point(tmp_path / "scene.yaml", samples=3, duration=3.0, equilibration=0.0), tmp_path)
-    with pytest.raises(ValueError, match="blocks: 4"):
-        gravity.measure_one_kind([made], SETTINGS)
 
 
 @pytest.fixture
@@ -151,7 +111,7 @@ def test_shares_of_the_light_discs_in_layers_of_the_container(source_column, mon
 def test_only_the_source_s_own_run_is_compared_with_its_numbers(source_column, tmp_path):
     settings = SETTINGS | {"blocks": 2, "source_shares": [0.5] * 3}
     own = replace(source_column, experiment="column_source")
-    made = [run(p, tmp_path) for p in (source_column, own)]
+    made = [simulated(replace(point, root=str(tmp_path))) for point in (source_column, own)]
     ds = gravity.measure_two_kinds(made, settings)
     assert np.isnan(ds["collisions"][0]) and np.isnan(ds["share"][0]).all()
     sim = gp.Simulation(own.scene, own.engine, seed=own.seed(0))

@@ -51,9 +51,3 @@ def test_heat_capacity_without_and_with_gravity(boxes):
     exact = 41.0 / 21.0  # (2 N + 1) / (N + 1)
     assert np.all(np.abs(high["fluctuation"] - exact) < 4.0 * high["fluctuation_error"])
     assert float(high["fluctuation_error"].max()) < 0.1
-
-
-def test_points_that_are_not_pairs_are_refused(boxes):
-    for chosen in (boxes[:3], boxes[1:3]):
-        with pytest.raises(ValueError, match="pair"):
-            heat_capacity.measure(chosen, {"blocks": 20})

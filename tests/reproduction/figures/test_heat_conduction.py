@@ -6,27 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from reproduction.made import made
 
 import gaspart as gp
 from gaspart.reproduction.figures import heat_conduction_gas, heat_conduction_metal
 from gaspart.reproduction.figures._gap import Averages, Gap, averages
-from gaspart.reproduction.figures.heat_conduction_gas import FRAMES, approach
+from gaspart.reproduction.figures.heat_conduction_gas import FRAMES
 from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import entries, from_rows
-from gaspart.theory.heat import METAL_GAP, conducting_slab, free_molecular_flux
+from gaspart.theory.heat import free_molecular_flux
 
 
 def run(tmp_path, scene, **settings):
     """A point of this scene with its runs made."""
-    scene.to_file(tmp_path / "scene.yaml")
-    settings |= {"scene": str(tmp_path / "scene.yaml")}
-    point = Point("heat", "single", "simulate", settings, str(tmp_path / "points"), 1)
-    times = point.schedule
-    for k, path in enumerate(point.replica_paths):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        engine = point.engine
-        gp.run(point.scene, engine, point.seed(k), times.duration, times.sample_interval, path)
-    return point
+    return made(tmp_path, "heat", scene, **{"replicas": 1} | settings)
 
 
 def gas(count, radius, components="all"):
@@ -63,18 +55,6 @@ def test_the_flux_is_without_what_the_particles_store():
     )
     assert found.flux().value == pytest.approx(3.0, abs=1e-12)
     assert found.wall_ratio().value == pytest.approx(600.0 / (600.0 + change.sum()))
-
-
-@pytest.mark.thorough
-def test_the_start_of_a_run_is_shown_from_one_temperature_on(tmp_path):
-    """Halves at one temperature."""
-    point = run(tmp_path, gas(100, 0.5), duration=20.0, equilibration=5.0, samples=8, boxes_per_side=1)
-    slab = conducting_slab(10.0, 100 / 360, 2.0, 1.0)
-    found = approach(point, slab)
-    assert 8 < len(found["approach_time"]) == len(found["approach"]) < FRAMES
-    assert abs(found["approach"][0]) < 4.0 * found["approach_error"][0]
-    # two halves of 50 spheres at 1.4, the squares of whose components vary by 2
-    assert found["approach_error"][0] == pytest.approx(1.4 * np.sqrt(2.0 * 2.0 / (3.0 * 50.0)), rel=0.15)
 
 
 @pytest.mark.thorough
@@ -144,24 +124,6 @@ def test_modes_and_electrons_have_the_temperature_of_the_walls(tmp_path):
 
 
 @pytest.mark.thorough
-def test_scatterers_on_a_grid_are_distinguished_from_electrons(tmp_path):
-    """The scatterers come first; they and the electrons take the temperature of the walls."""
-    faces = dict.fromkeys(("x_low", "x_high"), gp.Thermal(2.0))
-    centres = [(x, y) for x in (2.0, 4.0, 6.0) for y in (1.0, 3.0, 5.0)]
-    scatterers = [gp.Particle(centre, (0.0, 0.0), 0.5, fixed=True, vibration=0.0) for centre in centres]
-    container = gp.Container((8.0, 6.0), ("wall", "periodic"))
-    scene = gp.Scene(container, [gp.Species(20, 0.02, temperature=1.0)], scatterers, faces=faces)
-    point = run(tmp_path, scene, duration=6000.0, equilibration=100.0, samples=600)
-    row = heat_conduction_metal.measure_metal(point, {"bins": 3, "blocks": 10})
-    assert row["regular"] and row["expected"] == 29.0
-    assert row["electrons_part"] == pytest.approx(20.0 / 29.0)
-    for name, value in (("energy_ratio", 1.0), ("mode_ratio", 1.0), ("modes", 2.0), ("electrons", 2.0)):
-        found = row[name]
-        assert np.all(np.abs(found.value - value) < 4.0 * found.error)
-        assert np.all(np.abs(found.value / value - 1.0) < 0.07)
-
-
-@pytest.mark.thorough
 def test_replicas_with_other_places_of_scatterers_are_one_block_each(tmp_path):
     """Their scatter is the uncertainty of the flux, which stretches of one run do not have."""
     faces = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(1.0)}
@@ -190,24 +152,3 @@ def test_a_bent_profile_is_distinguished_from_a_straight_one():
     straight[[0, -1]] = 1.5  # next to the walls
     assert heat_conduction_metal.bend(straight) == pytest.approx(0.0, abs=1e-12)
     assert heat_conduction_metal.bend(bent) == pytest.approx(0.3)
-
-
-@pytest.mark.parametrize(
-    ("change", "subjects"),
-    [
-        ({}, {"energy of a mode", "second-order", "flux among", "heat capacity"}),
-        ({"gap_over_path": 5.0}, {"energy of a mode", "flux among", "heat capacity"}),
-        ({"hot": 1.5}, {"energy of a mode", "flux among", "heat capacity"}),
-        ({"regular": False}, {"energy of a mode", "second-order", "heat capacity"}),
-    ],
-)
-def test_a_metal_is_compared_where_theory_has_been_computed(change, subjects):
-    """The bend between walls at 2 and 1, of this gap; the flux of a grid only with that of random places."""
-    row = {"hot": 2.0, "cold": 1.0, "expected": 360.0, "gap_over_path": METAL_GAP, "regular": False}
-    row |= {"position": np.linspace(0.1, 0.9, 8), "electrons": np.linspace(1.9, 1.1, 8)}
-    row |= entries(dict.fromkeys(("share", "flux", "bend"), (1.0, 0.01)))
-    metals = from_rows("point", [row | change, row | {"regular": True} | change], ("bin",))
-    metals = metals.assign(electrons_error=0.01 * metals["electrons"], slope=1.0, slope_error=0.01)
-    claimed = [one.claim for one in heat_conduction_metal.claims(metals)]
-    texts = {"energy of a mode", "second-order", "flux among", "heat capacity"}
-    assert {text for text in texts if any(claim.startswith(text) for claim in claimed)} == subjects

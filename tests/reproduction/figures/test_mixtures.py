@@ -5,28 +5,19 @@ import math
 import numpy as np
 import pytest
 from reproduction.claims.data import judged
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart import theory
 from gaspart.reproduction.figures import mixtures
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import from_rows
 
 GAS = {
-    "dimension": 3,
-    "count": 200,
-    "radius": 0.5,
-    "packing_fraction": 0.2,
-    "boundary": "periodic",
-    "temperature": 1.0,
-    "exact_temperature": True,
-    "engine": "event",
-    "collisions_per_particle": 300,
-    "equilibration": 20,
-    "samples": 32,
-    "replicas": 2,
-}
+    "dimension": 3, "count": 200, "radius": 0.5, "packing_fraction": 0.2, "boundary": "periodic",
+    "temperature": 1.0, "exact_temperature": True, "engine": "event", "collisions_per_particle": 300,
+    "equilibration": 20, "samples": 32, "replicas": 2,
+}  # fmt: skip
 TWO = {"size_ratio": 0.6, "small_fraction": 0.5, "pairs": True}
 
 
@@ -34,13 +25,11 @@ def point(**settings):
     return Point("mixture", "one", "simulate", GAS | settings, "results", 1)
 
 
-def test_both_kinds_are_near_theory(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    points = [point(**TWO), point(polydispersity=0.2)]
-    points[1] = Point("many", *("one", "simulate"), points[1].settings, "results", 1)
-    for one in points:
-        (tmp_path / one.path).parent.mkdir(parents=True)
-        simulate(tmp_path / one.path, **one.arguments)
+def test_both_kinds_are_near_theory(tmp_path):
+    points = [
+        simulated(Point(name, "one", "simulate", GAS | sizes, str(tmp_path), 1))
+        for name, sizes in (("mixture", TWO), ("many", {"polydispersity": 0.2}))
+    ]
     ds = mixtures.measure(points, {})
     assert ds["packing_fraction"].values == pytest.approx(0.2, rel=1e-12)
     for row in (ds.isel(point=n) for n in (0, 1)):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.figures.drawn import Points, draw, lines, shows
+from reproduction.figures.drawn import draw, lines, shows
 
 import gaspart as gp
 from gaspart.analysis import measuring
@@ -19,7 +19,7 @@ from gaspart.errors import SceneError
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import check
 from gaspart.reproduction.figures import own
-from gaspart.reproduction.figures.own import APPROXIMATE, caption
+from gaspart.reproduction.figures.own import APPROXIMATE
 from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.points import figure_points
 
@@ -137,7 +137,7 @@ def test_an_exponent_and_a_theory_of_unknown_uncertainty():
 def test_numbers_are_drawn_with_theory(simulated):
     dataset = measured(simulated)
     (axis,) = draw(own.draw, dataset).axes
-    shows(axis, Points(dataset["against"], dataset["value"], dataset["value_error"]))
+    shows(axis, dataset["against"], dataset["value"], dataset["value_error"])
     assert np.allclose(lines(axis)[0].get_ydata(), dataset["theory"])
     (plain,) = draw(own.draw, measured(simulated, theory=False, logarithmic="both")).axes
     assert not lines(plain)
@@ -183,24 +183,14 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
     ]
 
 
-def test_a_caption_without_a_finding_gets_a_title():
-    assert caption(SETTINGS) == (
-        "**Compressibility factor PV/(N k_B T), against packing fraction.** Spheres in a periodic cube."
-    )
-    assert caption({**SETTINGS, "caption": "**Mine.** Text"}) == "**Mine.** Text"
-
-
 @pytest.mark.parametrize(
     ("settings", "key", "rule"),
     [
-        ({"against": "boundary"}, "against", "a number at every point"),
         ({"against": "mass"}, "against", "a number at every point"),
         ({"experiments": ["placed"]}, "experiments", "must make trajectories"),
         ({"observable": "z"}, "observable", "must be one of"),
-        ({"kind": "picture"}, "kind", "must be one of"),
         ({"place": 1.0}, "place", "for a curve only"),
         ({"observable": "rdf"}, "claims.0", "needs the place"),
-        ({"claims": [{"that": "theory", "fails_if": "a"}]}, "claims.0.required", "is required with"),
         (
             {"claims": [{"that": "theory", "required": 0.1, "value": 1.0, "fails_if": "a"}]},
             "claims.0.value",
@@ -213,10 +203,8 @@ def test_a_caption_without_a_finding_gets_a_title():
             "claims.0.between",
             "there is none of the points, which are from 0.05 to 0.1",
         ),
-        ({"claims": [{**POWER, "between": [0.1, 0.05]}]}, "claims.0.between", "there is none"),
         ({"claims": [POWER]}, "claims.0", "needs 3 points or more; there are 2"),
         ({"observable": "shear_viscosity"}, "observable", "needs correlations of the stress"),
-        ({"observable": "pressure", "claims": []}, "observable", "has no walls"),
         ({"observable": "pair_rates", "claims": []}, "observable", "must count collisions by pairs"),
     ],
 )

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
-from gaspart import run, theory
+from gaspart import theory
 from gaspart.reproduction.figures.radius_grid import crossings_per_collision, expected_pair_tests, measure
 from gaspart.reproduction.points.point import Point
 
@@ -30,7 +29,7 @@ def test_crossings_fall_with_the_box_and_with_density():
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    root = tmp_path_factory.mktemp("points")
+    root = str(tmp_path_factory.mktemp("points"))
     common = {"dimension": 3, "side": 10, "boundary": "periodic", "temperature": 1.0, "boxes_per_particle": 1}
     event = {"engine": "event", "collisions_per_particle": 60, "equilibration": 10, "samples": 20}
     step = {"engine": "step", "time_step": 0.02, "passes": 1, "steps": 200, "equilibration": 100}
@@ -41,34 +40,23 @@ def dataset(tmp_path_factory):
         "fraction_steps": [step | {"packing_fraction": 0.1, "count": n} for n in (125, 216)],
         "count_steps": [step | {"count": 125, "radius": r} for r in (0.4, 0.6)],
     }
-    points = []
-    for name, settings in experiments.items():
-        for k, varying in enumerate(settings):
-            point = Point(name, str(k), "simulate", common | varying, str(root), 3)
-            schedule = point.schedule
-            Path(point.path).mkdir(parents=True)
-            times = schedule.duration, schedule.sample_interval
-            run(point.scene, point.engine, point.seed(), *times, point.replica_path(0))
-            points.append(point)
-    return measure(points, {})
+    return measure(
+        [
+            simulated(Point(name, str(k), "simulate", common | varying, root, 3))
+            for name, settings in experiments.items()
+            for k, varying in enumerate(settings)
+        ],
+        {},
+    )
 
 
 @pytest.mark.thorough
-def test_series_are_recognised(dataset):
+def test_counts_are_as_predicted_and_z_is_that_of_the_packing_fraction(dataset):
     fixed = (dataset["series"] == "packing fraction").values
     assert fixed.tolist() == [True] * 3 + [False] * 3 + [True] * 2 + [False] * 2
     assert dataset["engine"].values.tolist() == ["event"] * 6 + ["step"] * 4
-
-
-@pytest.mark.thorough
-def test_counts_are_as_predicted(dataset):
     event, step = dataset.isel(point=slice(0, 6)), dataset.isel(point=slice(6, 10))
     assert np.all(np.abs(event["crossings"] - 1.0) < 4.0 * event["crossings_error"])
     assert event["crossings_counted"].values == pytest.approx(event["crossings_expected"].values, rel=0.1)
     assert step["pair_tests"].values == pytest.approx(step["pair_tests_expected"].values, rel=0.03)
-
-
-@pytest.mark.thorough
-def test_z_is_that_of_the_packing_fraction(dataset):
-    event = dataset.isel(point=slice(0, 6))
     assert np.all(np.abs(event["Z"] - event["reference"]) < 4.0 * event["Z_error"])

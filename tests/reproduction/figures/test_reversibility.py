@@ -14,12 +14,12 @@ from gaspart.reproduction.points.point import Point
 SIDE = 8.7
 
 
-def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples=30):
+def echoes(growth, engine="event", jump_after=None, seeds=6, samples=30):
     """What `echo` gives if errors grow from a coordinate's rounding by exp(growth) a collision."""
     rng = np.random.default_rng(2)
     s = np.linspace(1.0, 30.0, samples) + np.zeros((seeds, 1))
     growth = growth * (1.0 + 0.02 * rng.standard_normal((seeds, 1)))
-    distance = np.minimum((first or SIDE * 2.0**-53) * np.exp(growth * s), 3.0)
+    distance = np.minimum(SIDE * 2.0**-53 * np.exp(growth * s), 3.0)
     if jump_after is not None:
         distance = np.where(s > jump_after, 2.0, distance)
     apart = np.minimum(1e-13 * np.exp(growth * s), 3.0)
@@ -34,18 +34,13 @@ def echoes(growth, engine="event", first=None, jump_after=None, seeds=6, samples
     )
 
 
-def measurement(folder, growth=1.47, jump_after=8.0):
-    """What `measure` makes of one gas by both engines; steps forget all at once."""
-    points = []
-    (folder / "gas").mkdir()
-    for name, run in (("event", echoes(growth)), ("step", echoes(growth, "step", jump_after=jump_after))):
-        points.append(Point("gas", name, "echo", {}, str(folder), 1))
-        run.to_netcdf(points[-1].path)
-    return measure(points, {})
-
-
 def test_growth_memory_and_jumps(tmp_path):
-    dataset = measurement(tmp_path)
+    """Of one gas by both engines: steps forget all at once."""
+    (tmp_path / "gas").mkdir()
+    points = [Point("gas", name, "echo", {}, str(tmp_path), 1) for name in ("event", "step")]
+    for one, run in zip(points, (echoes(1.47), echoes(1.47, "step", jump_after=8.0)), strict=True):
+        run.to_netcdf(one.path)
+    dataset = measure(points, {})
     event, step = dataset.isel(row=0), dataset.isel(row=1)
     assert float(event.growth) == pytest.approx(1.47, rel=0.03)
     assert float(event.divergence) == pytest.approx(float(event.growth), rel=0.01)

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import xarray as xr
 from reproduction.figures.stored import runs_of
-from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.analysis.statistics import histogram_chi_square
 from gaspart.errors import SceneError
-from gaspart.reproduction.figure import kurtosis
 from gaspart.reproduction.figures import speeds
 from gaspart.reproduction.figures.speeds import measure_distribution, measure_relaxation
 from gaspart.reproduction.points.point import Point
@@ -22,16 +18,9 @@ from gaspart.reproduction.points.point import Point
 def point(dimension=3, count=200, experiment="speeds", **more):
     """One point of a grid; nothing of it is run."""
     settings = {
-        "dimension": dimension,
-        "count": count,
-        "radius": 0.2,
-        "packing_fraction": 0.01,
-        "speed": 1.0,
-        "engine": "event",
-        "duration": 3.0,
-        "samples": 3,
-        "replicas": 4,
-    }
+        "dimension": dimension, "count": count, "radius": 0.2, "packing_fraction": 0.01, "speed": 1.0,
+        "engine": "event", "duration": 3.0, "samples": 3, "replicas": 4,
+    }  # fmt: skip
     return Point(experiment, "single", "simulate", settings | more, "results/points", 1)
 
 
@@ -83,14 +72,6 @@ def mixture(rng, never, count=4000, dimension=3):
     later[untouched:] /= np.sqrt((later[untouched:] ** 2).sum() / (count - untouched))
     later[:untouched] = first[:untouched] * rng.choice([-1.0, 1.0], (untouched, dimension))
     return np.stack([first, later])
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_kurtosis_of_equal_and_of_maxwellian_speeds(dimension):
-    rng = np.random.default_rng(1)
-    assert kurtosis(np.full((3, 7), 2.5)) == pytest.approx(np.ones(3))
-    sample = np.linalg.norm(rng.standard_normal((200_000, dimension)), axis=1)
-    assert kurtosis(sample) == pytest.approx(theory.kurtosis(dimension), abs=0.02)
 
 
 def test_walls_do_not_hit_but_the_last_bit_does():
@@ -177,17 +158,3 @@ def test_the_conserved_energy_takes_a_degree_of_freedom(stored):
         cdf = lambda u: theory.maxwell_cdf(u, 3, 1 / 3)  # noqa: E731
         found.append(histogram_chi_square(run.speeds.ravel(), cdf, 10).chi_square)
     assert np.mean(found) == pytest.approx(8.0, abs=4 * np.sqrt(16 / 300))
-
-
-def test_a_real_gas_relaxes(tmp_path):
-    one = point(count=500, packing_fraction=0.05, duration=8.0, samples=8, replicas=2, boundary="wall")
-    one = simulated(replace(one, root=str(tmp_path)))
-    ds = measure_relaxation([one], {"times": [2.0, 8.0], "bins": 10, "highest": 2.5}).isel(engine=0)
-    s = ds["collisions"].values
-    assert s[-1] > 4.0
-    theoretical = theory.relaxation(3)
-    assert ds["kurtosis"].values == pytest.approx(theoretical.kurtosis(s), abs=0.12)
-    assert ds["never_hit"].values == pytest.approx(theoretical.never_hit(s), abs=0.06)
-    assert np.diff(ds["entropy_deficit"])[:5].max() < 0.0
-    assert float(ds["temperature_drift"].max()) < 1e-13
-    assert s[-1] == pytest.approx(float(theoretical.collisions(ds.attrs["collision_rate"] * 8.0)), rel=0.15)

@@ -17,10 +17,8 @@ from gaspart.reproduction.figures.stability_extremes import (
     ENGINES,
     FAILS,
     PASSES,
-    REASONS,
     REFUSED,
     attempt,
-    reason,
     run_guarded,
     run_row,
 )
@@ -134,21 +132,3 @@ def test_an_unresolved_particle_is_refused():
     assert math.isclose(scenes.pair_in(1e9).container.lengths[0], 1e9)
     with pytest.raises(gp.SceneError, match="too small"):
         scenes.pair_in(1e15)
-
-
-@pytest.mark.parametrize(
-    ("message", "letter"),
-    [
-        ("at time 1 80 of 338 contacts were found a step too late", "a"),
-        ("time_step = 0.01: moves particles by less than float32 resolves in a length of 8", "b"),
-        ("particles[0].radius = 0.5: leaves no room between two walls", "f"),
-        ("at time 0 particle 9 has had 12 contacts: an inelastic collapse, or a stack at rest", "g"),
-        ("something else", "?"),
-    ],
-)
-def test_refusals_are_grouped_by_their_messages(message, letter):
-    assert reason(message)[0] == letter
-
-
-def test_reasons_have_different_letters():
-    assert len({letter for letter, *_ in REASONS}) == len(REASONS)

@@ -4,40 +4,31 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial
 from gaspart.reproduction.figures import chemical_potential, structure
 from gaspart.reproduction.figures.chemical_potential import STATE_POWERS, MeasuredState
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 
 GAS = {
-    "dimension": 3,
-    "count": 108,
-    "radius": 0.5,
-    "boundary": "periodic",
-    "temperature": 1.0,
-    "arrangement": "lattice",
-    "engine": "event",
-    "collisions_per_particle": 400,
-    "equilibration": 20,
+    "dimension": 3, "count": 108, "radius": 0.5, "boundary": "periodic", "temperature": 1.0,
+    "arrangement": "lattice", "engine": "event", "collisions_per_particle": 400, "equilibration": 20,
     "samples": 200,
-}
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def points(tmp_path_factory):
     """Spheres at three packing fractions, of which the last two are measured."""
-    folder = tmp_path_factory.mktemp("points")
+    folder = str(tmp_path_factory.mktemp("points"))
     made = []
     for name, eta in (("a", 0.05), ("b", 0.12), ("c", 0.2)):
         settings = GAS | {"packing_fraction": eta}
-        point = Point("states" if name == "a" else "frames", name, "simulate", settings, str(folder), 1)
-        (folder / point.experiment).mkdir(exist_ok=True)
-        simulate(folder / point.experiment / name, **point.arguments)
-        made.append(point)
+        experiment = "states" if name == "a" else "frames"
+        made.append(simulated(Point(experiment, name, "simulate", settings, folder, 1)))
     return made
 
 

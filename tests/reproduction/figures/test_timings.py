@@ -28,34 +28,6 @@ def test_median_ignores_a_disturbed_repeat():
     assert error[0] < 0.02
 
 
-def test_the_ideal_number_is_found_both_ways():
-    found = timings.ideal(costs(np.geomspace(1.0, 300.0, 14), noise=0.01), 3)
-    assert found["ideal_interior"]
-    assert found["ideal"] == pytest.approx(IDEAL, rel=0.25)
-    assert found["model_low"] < IDEAL < found["model_high"]
-    assert found["model"] == pytest.approx(IDEAL, rel=0.1)
-    assert found["test_seconds"] == pytest.approx(TEST, rel=0.1)
-
-
-def test_a_minimum_beyond_the_scan_is_not_claimed():
-    found = timings.ideal(costs(np.geomspace(0.5, 8.0, 6)), 3)
-    assert not found["ideal_interior"]
-    assert math.isinf(found["ideal_high"])
-
-
-def test_penalty():
-    boxes = np.geomspace(1.0, 256.0, 9)
-    made = costs(boxes)
-    least = PARTICLE + 2.0 * math.sqrt(TEST * 13.5 * BOX)
-    assert timings.penalty(made, 4.0)[0] == pytest.approx(float(made.seconds[2]) / least, rel=1e-4)
-    assert timings.penalty(made, IDEAL)[0] == pytest.approx(1.0, abs=1e-4)
-    assert math.isnan(timings.penalty(made, 300.0)[0])
-
-
-def test_penalty_of_the_finest_boxes_where_the_time_falls_throughout():
-    assert timings.penalty(costs(np.geomspace(0.5, 8.0, 6)), 8.0)[0] == 1.0
-
-
 def test_boxes_of_a_penalty_cost_nothing_rather_than_less():
     """The time falls faster at the finest partitions than one over their number, as by a disturbance."""
     made = costs(np.geomspace(0.5, 8.0, 8))

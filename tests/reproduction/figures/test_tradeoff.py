@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
 import gaspart as gp
 from gaspart import theory
@@ -16,13 +17,11 @@ from gaspart.reproduction.figures import _flows as flows
 from gaspart.reproduction.figures import _tradeoff as tradeoff
 from gaspart.reproduction.figures import speed_accuracy, time_to_accuracy
 from gaspart.reproduction.figures._tradeoff import ENGINES, PARTS, Choice
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.scene.facts import Gas
 
 STEPS = np.array([0.32, 0.16, 0.08, 0.04])
 SETTINGS = {"order_up_to": 0.2, "cells": []}
-FRACTIONS = (0.0001, 0.001, 0.01, 0.1, 0.3)
 SNAPSHOTS, CONTACTS, Z, SECONDS = 6, 1e5, 1.5, 1e-6
 
 
@@ -123,12 +122,6 @@ def test_a_pressure_error_is_weighed_by_its_part_in_z(dataset):
     assert row.bias.values[:3] == pytest.approx(-(STEPS[:3] ** 3) / 3.0, rel=1e-2)
 
 
-def test_a_refused_step_is_left_out(dataset):
-    late = dataset.set_index(row="setting").sel(row="1 pass, no rewinding")
-    assert late.time_step.values[:3] == pytest.approx(STEPS[1:])
-    assert np.isnan(late.time_step.values[3])
-
-
 def test_models_of_dsmc_in_discs(tmp_path):
     """The cheapest step; the error of Z of the Boltzmann equation. That of the Enskog model is unknown: the
     loss in its cells was measured in spheres."""
@@ -189,15 +182,6 @@ def choice(model=0.0, discretisation=0.0, least=0.5, **changes):
     limits = least + 1.0, math.inf, 1.0, 0.0
     option = Option(candidate, candidate.bias, noise, 1.0, 1.0, *limits)
     return Choice(option, **{"decay": 0.1, "uncertainty": 0.01, "finite_size": 1e-4} | changes)
-
-
-def test_a_cost_is_that_of_the_noise_that_bias_leaves_room_for():
-    assert choice().option.cost(0.001) == pytest.approx(1e-4 * (1.96 / 0.001) ** 2 + 1.0)
-    assert choice(model=0.0003, discretisation=0.0002).option.cost(0.001) == pytest.approx(
-        1e-4 * (1.96 / 0.0005) ** 2 + 1.0
-    )
-    assert choice().option.cost(0.1) == pytest.approx(1.5)  # the shortest run
-    assert choice(model=0.001).option.cost(0.001) == math.inf
 
 
 def test_parts_fill_the_accuracy():
@@ -283,9 +267,7 @@ def test_rarer_collisions_make_speeds_relax_later():
 def point(folder, **settings):
     """A point whose runs have been made."""
     basic = {"dimension": 3, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.1}
-    made = Point("gas", "point", "simulate", basic | settings, str(folder), 1)
-    simulate(folder / "gas" / "point", **made.arguments)
-    return made
+    return simulated(Point("gas", "point", "simulate", basic | settings, str(folder), 1))
 
 
 def test_relaxation_of_a_small_gas(tmp_path):
@@ -305,19 +287,9 @@ def test_cells_of_a_small_gas(tmp_path):
         "engine": "dsmc", "model": "enskog",
         "collisions_per_particle": 1000, "equilibration": 10, "samples": 50,
     }  # fmt: skip
-    (tmp_path / "one").mkdir(), (tmp_path / "many").mkdir()
     one = tradeoff.Cells(point(tmp_path / "one", cells_per_side=1, **gas))
     many = tradeoff.Cells(point(tmp_path / "many", cells_per_side=3, **gas))
     assert abs((one.rate - 1.0).deviation) < 4.0 and one.bound == 0.0
     assert 1.0 - many.bound < many.rate.value < 1.0 - 4.0 * many.rate.error
     assert many.error > many.bound / 4.0
     assert np.isfinite(list(one.noise.values())).all()
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(4e-4, "0.4 ms"), (0.0123, "12 ms"), (0.553, "550 ms"), (3.2, "3 s"), (59.0, "59 s"), (150.0, "2 min"),
-     (4000.0, "1 h"), (2e5, "2 d"), (4e8, "13 y")],
-)  # fmt: skip
-def test_durations(seconds, text):
-    assert time_to_accuracy.duration(seconds) == text

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
+from reproduction.made import simulated
 
 from gaspart import theory
 from gaspart.reproduction.figures import transport
-from gaspart.reproduction.jobs.simulate import simulate
 from gaspart.reproduction.points.point import Point
 from gaspart.reproduction.table import entries, from_rows
 
@@ -20,17 +19,9 @@ GAS = {
 MEASURE = {"viscosity": transport.measure_viscosity, "conductivity": transport.measure_conductivity}
 
 
-def simulated(tmp_path, monkeypatch, experiment, name, **changes):
-    monkeypatch.chdir(tmp_path)
-    one = Point(experiment, name, "simulate", GAS | changes, "results", 1)
-    (tmp_path / one.path).parent.mkdir(parents=True, exist_ok=True)
-    simulate(tmp_path / one.path, **one.arguments)
-    return one
-
-
-def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
+def test_coefficients_are_near_enskogs(tmp_path):
     """At packing fraction 0.1, where these differ from it by a few per cent, by 4 sigma of some 6 %."""
-    one = simulated(tmp_path, monkeypatch, "spheres", "one")
+    one = simulated(Point("spheres", "one", "simulate", GAS, str(tmp_path), 1))
     for name, measure in MEASURE.items():
         row = measure([one], {}).isel(point=0)
         error = float(row["value_error"])
@@ -42,31 +33,6 @@ def test_coefficients_are_near_enskogs(tmp_path, monkeypatch):
         if name == "viscosity":
             assert float(row["bulk_error"]) < 0.15
             assert abs(float(row["bulk"]) - 1.0) < 4.5 * float(row["bulk_error"]) + 0.03
-
-
-@pytest.mark.thorough
-def test_growth_is_the_integrals_own(tmp_path, monkeypatch):
-    """Dilute discs in two small containers: growths are noise, the curves those of `coefficient`."""
-    short = {"dimension": 2, "replicas": 4, "samples": 200, "collisions_per_particle": 200}
-    points = [
-        simulated(tmp_path, monkeypatch, "discs", f"count={count}", count=count, **short)
-        for count in (36, 64)
-    ]
-    starts = {"viscosity": 4.0, "conductivity": 8.0}
-    found = transport.measure_growth(points, {f"{name}_from": start for name, start in starts.items()})
-    for name, measure in MEASURE.items():
-        plain = measure(points, {})
-        np.testing.assert_allclose(found[name], plain["running"])
-        np.testing.assert_allclose(found["time"], plain["time"])
-        late = found["time"].values >= starts[name]
-        modes = found[f"{name}_modes"].values
-        assert (np.isfinite(modes) == late).all()
-        for row in range(2):
-            ends = np.flatnonzero(late[row])[[0, -1]]
-            grown, of_modes = np.diff(found[name].values[row, ends]), np.diff(modes[row, ends])
-            assert np.isclose(float(found[f"{name}_growth"][row]), grown[0])
-            assert np.isclose(float(found[f"{name}_modes_growth"][row]), of_modes[0])
-            assert 0.0 < float(found[f"{name}_short_waves"][row]) < 1.0
 
 
 @pytest.mark.parametrize(

@@ -48,17 +48,6 @@ def test_exact_data_give_the_exact_coefficients(dimension):
     assert np.all(held_error >= 0.0) and np.all(held_error < fit.errors * 10)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_fitted_coefficients_scatter_as_their_errors_say(dimension):
-    exact, _ = theory.virial_coefficients(dimension, 4)
-    fits = [equation_of_state(dimension, seed=seed).isel(fit=0) for seed in range(60)]
-    pulls = np.array([
-        (fit["coefficient"].values[:3] - exact[1:]) / fit["coefficient_error"].values[:3] for fit in fits
-    ])  # fmt: skip
-    assert np.allclose(pulls.mean(axis=0), 0.0, atol=0.5)
-    assert np.allclose(pulls.std(axis=0), 1.0, atol=0.3)
-
-
 def test_a_cut_series_is_biased():
     z = theory.compressibility_factor(ETA, 2)
     fit, held_error = fit_coefficients(ETA, Estimate(z, 1e-4 * (z - 1.0)), 2, free=4, held=False)

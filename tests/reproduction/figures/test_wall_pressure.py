@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from reproduction.made import simulated
 
-import gaspart as gp
 from gaspart.analysis.run import Run
 from gaspart.errors import SceneError
 from gaspart.reproduction.figures import wall_pressure
@@ -18,21 +18,10 @@ def point(tmp_path, **settings):
         "dimension": 2, "radius": 0.5, "side": [20, 10], "boundary": ["wall", "periodic"], "count": 40,
         "temperature": 1.0, "collisions_per_particle": 300, "equilibration": 20, "samples": 32,
     } | settings  # fmt: skip
-    made = Point("some", "single", "simulate", settings, str(tmp_path), 1)
-    recipe = made.parameters
-    gp.run(
-        made.scene,
-        made.engine,
-        seed=made.seed(),
-        duration=recipe["duration"],
-        sample_interval=recipe["sample_interval"],
-        path=tmp_path / "some/single/replica-0.nc",
-    )
-    return made
+    return simulated(Point("some", "single", "simulate", settings, str(tmp_path), 1))
 
 
 def test_a_gas_between_two_walls_has_the_pressure_of_theory(tmp_path):
-    (tmp_path / "some/single").mkdir(parents=True)
     row = wall_pressure.measure([point(tmp_path, temperature=3.0)], {}).isel(point=0)
     assert float(row["temperature"]) == pytest.approx(3.0, rel=0.5)
     assert float(row["pressure_error"] / row["pressure"]) < 0.03

@@ -59,23 +59,6 @@ def test_short_steps_do_not_start_from_what_long_ones_left():
     assert run.collisions.values[1] == alone.collisions.values[0]
 
 
-def test_all_pairs_at_every_event():
-    run = measured([EventDriven(search="pairs")], DISCS, interval=10.0)
-    events = int((run.collisions + run.wall_hits)[0])
-    assert events > 10
-    assert int(run.pair_tests[0]) == (events + 1) * 40 * 39 // 2
-
-
-def test_searches_have_the_same_events():
-    runs = [
-        measured([EventDriven(search=search)], DISCS, 5.0, 10.0) for search in ("pairs", "direct", "boxes")
-    ]
-    assert len({int(run.collisions[0]) for run in runs}) == 1
-    assert len({int(run.wall_hits[0]) for run in runs}) == 1
-    tests = [int(run.pair_tests[0]) for run in runs]
-    assert tests[0] > tests[1] > tests[2]
-
-
 def test_a_rival_is_timed_with_engines_of_its_own():
     """The same gas, searched in all boxes instead of those within reach: from the same state."""
     near = [TimeStepped(0.01, boxes_per_side=n, passes=1, near_boxes=True) for n in (4, 8)]
@@ -86,11 +69,6 @@ def test_a_rival_is_timed_with_engines_of_its_own():
     assert len(set(run.collisions.values.tolist())) == 1
     assert (run.box_visits.values[:2] < 0.3 * run.box_visits.values[2:]).all()
     assert run.pair_tests.values[2:].tolist() == measured(wide, equilibration=0.05).pair_tests.values.tolist()
-
-
-def test_refuses_boxes_below_a_diameter():
-    with pytest.raises(SceneError, match="boxes_per_side"):
-        measured([TimeStepped(0.01, boxes_per_side=101)])
 
 
 def test_work_that_differs_between_repeats_is_an_error(monkeypatch):
@@ -119,13 +97,6 @@ def test_parts_of_the_step_that_the_scene_gives():
     assert found.attributes["engine"] == "dsmc" and found.attributes["model"] == "boltzmann"
     alone = measure_cost(**Point("gas", "a", "measure_cost", gas | run, ".", 1).arguments)
     assert alone.variables["steps"][1] == steps[:1]
-
-
-def test_parts_of_a_step_need_an_engine_with_steps():
-    gas = {"dimension": 3, "count": 20, "radius": 0.5, "packing_fraction": 0.01, "boundary": "periodic"}
-    run = {"temperature": 1.0, "engine": "event", "collisions_per_particle": 2, "scan_step_parts": [1]}
-    with pytest.raises(SceneError, match="has no meaning with engine: event"):
-        _ = Point("gas", "a", "measure_cost", gas | run, ".", 1).engines
 
 
 @pytest.mark.thorough

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from PIL import Image
 
 from gaspart.reproduction.figures._tradeoff import ENGINES, NAMES, PARTS
 from gaspart.reproduction.registry import chapter, families, titles
@@ -20,13 +17,11 @@ from gaspart.reproduction.report.page import (
     LIMIT,
     Caption,
     Section,
-    address,
     by_chapter,
     deviation,
     dots,
     findings,
     headline,
-    picture,
     split_caption,
 )
 from gaspart.theory.state import compressibility_factor
@@ -86,29 +81,9 @@ def test_the_chance_that_true_claims_disagree_is_bounded_by_what_is_judged_toget
     assert headline(rows)["chance"] == pytest.approx(4 * 0.0027, rel=1e-3)
 
 
-def test_pictures_lie_beside_the_page_or_are_in_it(tmp_path):
-    path = tmp_path / "figures" / "one.png"
-    (path.parent / "journal").mkdir(parents=True)
-    (path.parent / "key").mkdir()
-    Image.fromarray(np.zeros((60, 100, 3), dtype=np.uint8)).save(path, dpi=(144, 144))
-    column = Image.fromarray(np.zeros((300, 150, 3), dtype=np.uint8))
-    column.save(path.parent / "journal/one.png", dpi=(288, 288))
-    column.save(path.parent / "key/one.png")
-    beside, within = picture(path, False), picture(path, True)
-    assert (beside.large, beside.small) == ("figures/one.svg", "figures/key/one.png")
-    assert beside.narrow == "figures/journal/one.png"
-    assert beside.size == within.size == (100, 60)
-    assert beside.narrow_size == within.narrow_size == (75, 150)
-    assert within.large.startswith("data:image/webp;base64,") and within.narrow != within.large
-    (tmp_path / "film.mp4").write_bytes(b"film")
-    assert address(tmp_path / "film.mp4", True) == "data:video/mp4;base64,ZmlsbQ=="
+# The parts of a caption.
 
 
-# The parts of a caption, and that each caption of the project has them.
-
-
-REPORT = Path(__file__).parents[3] / "workflow/report"
-MOST_WORDS = 120
 LONG = """**Discs freeze.** (a) Pressure of
 discs.
 
@@ -128,15 +103,6 @@ def test_a_caption_is_divided():
 def test_a_caption_begins_with_its_finding():
     with pytest.raises(ValueError, match="begins with its finding"):
         split_caption("Discs freeze.")
-
-
-@pytest.mark.parametrize("figure", families())
-def test_how_to_read_a_figure_takes_few_words(figure, capsys):
-    text = (REPORT / f"{figure}.rst").read_text(encoding="utf-8")
-    parts = split_caption(re.sub(r"\{\{.*?\}\}", "0.123(4)", text, flags=re.DOTALL))
-    assert capsys.readouterr().err == ""  # docutils has nothing to complain about
-    words = re.sub(r"<math.*?</math>", "formula", parts.reading, flags=re.DOTALL)
-    assert len(re.sub(r"<[^>]+>", "", words).split()) <= MOST_WORDS
 
 
 # Claims on the axis of deviations.
