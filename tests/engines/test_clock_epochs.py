@@ -40,15 +40,6 @@ def test_a_disc_in_a_vast_container_hits_its_walls(side):
     assert sim.events["time"] == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.thorough
-def test_a_run_without_possible_events_is_stopped():
-    particles = [gp.Particle((x, 5.0), (1.0, 0.0), 0.5) for x in (2.0, 6.0)]
-    scene = gp.Scene(gp.Container((10.0, 10.0), "periodic"), particles=particles)
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    with pytest.raises(gp.SimulationError, match="particles miss one another"):
-        sim.advance(max_events=1)
-
-
 def together(slower):
     """Two discs that fly almost evenly round a periodic container, 4 apart, and meet after 4 / `slower`."""
     particles = [gp.Particle((2.0, 5.0), (1.0, 0.0), 0.5), gp.Particle((7.0, 5.0), (1.0 - slower, 0.0), 0.5)]

@@ -199,13 +199,3 @@ def weight_of_rates():
     others = rng.normal(size=(4000, 2))
     rates = np.array([np.hypot(*(v - others).T).mean() for v in rng.normal(size=(4000, 2))])
     return float((rates**2).mean() / rates.mean() ** 2)
-
-
-@pytest.mark.interpreted
-def test_the_time_stepped_engine_names_the_alternative():
-    with pytest.raises(gp.SceneError, match='needs the "event" .*engine') as error:
-        gp.Simulation(pile(), gp.TimeStepped(0.01))
-    assert "\n" not in str(error.value)
-    law = gp.Restitution(0.9, contact_duration=0.1)
-    with pytest.raises(gp.SceneError, match='restitution.contact_duration = 0.1: needs the "event" .*engine'):
-        gp.Simulation(replace(pile(), gravity=None, restitution=law), gp.TimeStepped(0.01))

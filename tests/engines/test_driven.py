@@ -8,7 +8,6 @@ from scipy.special import erf, exp1
 
 import gaspart as gp
 from gaspart import theory
-from gaspart.cli import main
 
 PLATES = {name: gp.Thermal(1.0) for name in ("x_low", "x_high")}
 PERIODIC = gp.Container((8.0, 7.0), "periodic")
@@ -144,18 +143,3 @@ def test_the_flow_is_a_parabola_with_the_viscosity_of_enskog():
 def test_what_gains_energy_without_limit_is_refused(parts, lacks):
     with pytest.raises(gp.SceneError, match=f"gives energy without limit along y.* takes the {lacks}"):
         channel(**parts)
-
-
-@pytest.mark.thorough
-def test_a_run_of_a_driven_gas_is_measured(tmp_path, capsys):
-    channel().to_file(tmp_path / "scene.yaml")
-    path = tmp_path / "run.nc"
-    run = ["run", str(tmp_path / "scene.yaml"), "-o", str(path), "--duration", "60", "--sample-interval", "2"]
-    assert main([*run, "--seed", "1"]) == 0
-    assert main(["check", str(path)]) == 0
-    with gp.open_trajectory(path) as data:
-        shear = data["wall_shear"].values[:, :2, 1]
-    assert (np.diff(shear.sum(axis=1)) != 0.0).all() and shear[-1].sum() > 0.5 * 16 * 0.3 * 60.0
-    pressure = gp.analysis.wall_pressure(path)
-    assert (pressure.estimate.values > 0.0).all()
-    capsys.readouterr()

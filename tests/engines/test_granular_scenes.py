@@ -112,11 +112,6 @@ def all_faults(seeds, **options):
     return found
 
 
-def test_random_granular_scenes_run_without_an_error():
-    """Rough ones, which all have the same compiled kernels."""
-    assert all_faults(range(3), tangential=(-0.5, 0.0, 0.5, 0.9)) == {}
-
-
 @pytest.mark.parametrize("seed", [146, 275])
 def test_contacts_with_walls_do_not_repeat_for_ever(seed):
     """A slow disc in an acute wedge, and one that an inelastic contact has left moving along a wall."""

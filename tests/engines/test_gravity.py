@@ -139,17 +139,6 @@ def test_gravity_that_vanishes(pull):
     assert np.allclose(plain.state.positions, pulled.state.positions, atol=1e5 * pull + 1e-7)
 
 
-@pytest.mark.thorough
-def test_gravity_of_zero_is_none():
-    scene = gas(2, 30, 0.1, "wall")
-    ends = []
-    for gravity in (None, (0.0, 0.0)):
-        sim = gp.Simulation(replace(scene, gravity=gravity), gp.EventDriven(), seed=3)
-        sim.advance(duration=20.0)
-        ends.append(sim.state.positions)
-    assert np.array_equal(*ends)
-
-
 @pytest.mark.interpreted
 @pytest.mark.parametrize("zero", [(0.0, 0.0), (0, 0), [0.0, -0.0]])
 def test_zero_gravity_is_none_from_the_start(zero):

@@ -269,14 +269,3 @@ def test_a_given_state_must_have_the_same_piston():
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([nearest + 0.2, 0.0])))
     with pytest.raises(gp.SceneError, match="must be a position from 0 to 16 and a velocity"):
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([17.0, 0.0])))
-
-
-@pytest.mark.thorough
-def test_the_gases_may_be_between_thermal_faces():
-    """Heat flows through the wall only as it moves: from the hot face to the cold one."""
-    faces = {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)}
-    sim = gp.Simulation(replace(divided(mass=1.0), faces=faces), EVENT, seed=1)
-    sim.advance(until=600.0)
-    sim.check_invariants()
-    given = sim.tally.wall_energy
-    assert given[0] < -50.0 and given[1] > 50.0

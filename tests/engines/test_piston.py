@@ -128,19 +128,6 @@ def test_an_ideal_gas_follows_its_adiabat():
     assert state.piston[0] < 7.0 and sim.tally.collisions == 0
 
 
-@pytest.mark.thorough
-def test_files_keep_its_motion(tmp_path):
-    scene = gas(gp.Piston(20.0, 0.6))
-    whole = gp.Simulation(scene, gp.EventDriven(), seed=3)
-    whole.advance(until=900.0)
-    gp.run(scene, gp.EventDriven(), 3, 900.0, 100.0, tmp_path / "gas.nc")
-    with gp.open_trajectory(tmp_path / "gas.nc") as run:
-        assert run["piston_position"].values[-1] == whole.state.piston[0]
-        assert run["piston_velocity"].values[-1] == whole.state.piston[1]
-        assert run["piston_position"].attrs["units"] == "length"
-        assert run["piston_position"].values[0] == 30.0
-
-
 @pytest.mark.interpreted
 def test_what_a_piston_does_not_go_with_is_refused():
     scene = gas(gp.Piston(20.0, 0.6))
@@ -164,13 +151,3 @@ def test_what_a_piston_does_not_go_with_is_refused():
             gp.Piston(mass, pressure)
     with pytest.raises(gp.SceneError, match="faces.x_high.*choose other units"):
         gas(gp.Piston(1e-59, 1e59))
-
-
-@pytest.mark.thorough
-def test_a_thermal_wall_may_stand_opposite():
-    scene = replace(
-        gas(gp.Piston(20.0, 0.6)), faces={"x_low": gp.Thermal(2.0), "x_high": gp.Piston(20.0, 0.6)}
-    )
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=1)
-    sim.advance(until=200.0)
-    sim.check_invariants()

@@ -97,17 +97,6 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
 
 
 @pytest.mark.interpreted
-def test_equal_rough_discs_exchange_their_surface_velocities():
-    """Equal masses, all of it in the rim (I = m R^2), perfectly rough: a grazing pair swaps v and R w."""
-    one = gp.Particle((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
-    other = gp.Particle((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
-    sim = collided(gp.Restitution(1.0, 1.0), one, other)
-    # surfaces slide at R w = 1; the impulse is -2/(2 + 2) of that
-    assert sim.state.velocities == pytest.approx(np.array([[0.0, -0.5], [1.0, 0.5]]), abs=1e-14)
-    assert sim.state.spins == pytest.approx([-1.0, 1.0], abs=1e-13)
-
-
-@pytest.mark.interpreted
 @pytest.mark.parametrize("law", [(1.0, 1.0), (0.6, 0.2), (0.0, -1.0)])
 def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
@@ -127,23 +116,6 @@ def test_a_wall_hit_follows_its_formula(law):
     )
     sim.advance(duration=1.0)
     sim.check_invariants()
-
-
-@pytest.mark.interpreted
-def test_a_superball_between_floor_and_ceiling_comes_back():
-    """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; three hits
-    of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
-    way = {}
-    for tangential in (-1.0, 1.0):
-        ball = gp.Particle((50.0, 1.0, 50.0), (1.0, -2.0, 0.0), 0.5)
-        scene = gp.Scene(
-            gp.Container((100.0, 3.0, 100.0)), particles=[ball], restitution=gp.Restitution(1.0, tangential)
-        )
-        sim = gp.Simulation(scene, gp.EventDriven())
-        sim.advance(max_events=3)
-        way[tangential] = sim.state.velocities[0, 0]
-    assert way[-1.0] == 1.0
-    assert way[1.0] < -0.3
 
 
 @pytest.mark.interpreted
@@ -294,19 +266,6 @@ def test_haffs_law():
         assert (ratio**-0.5 - 1.0) * tau / sim.time == pytest.approx(1.0, abs=0.05)
 
 
-@pytest.mark.thorough
-def test_rough_elastic_discs_share_the_energy_equally():
-    scene = replace(gas(2, 300, 0.1), restitution=gp.Restitution(1.0, 1.0))
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
-    sim.advance(max_events=20_000)
-    shares = []
-    for _ in range(60):
-        sim.advance(max_events=1000)
-        shares.append(sim.state.rotational_energy / sim.state.kinetic_energy)
-    assert np.mean(shares) == pytest.approx(1 / 3, abs=0.01)
-    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-11)
-
-
 @pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("change", "key"),
@@ -336,23 +295,6 @@ def test_what_is_refused(change, key):
     with pytest.raises(gp.SceneError) as caught:
         gp.Scene.from_dict({"container": {"lengths": [10.0, 10.0]}} | change)
     assert caught.value.key == key
-
-
-@pytest.mark.interpreted
-def test_files_and_the_other_engine():
-    scene = gp.Scene(
-        gp.Container((10.0, 10.0)),
-        [gp.Species(1, 0.5, fixed=True)],
-        [gp.Particle((5.0, 5.0), (0.0, 0.0), 0.5, spin=2.0, moment_of_inertia=0.1)],
-        restitution=gp.Restitution(0.5, 0.5),
-    )
-    falling = replace(scene, gravity=(0.0, -1.0))
-    with pytest.raises(gp.SceneError, match="restitution"):
-        gp.Simulation(falling, gp.TimeStepped(0.1))
-    assert "fixed" not in str(gas(2, 3, 0.01).to_dict())
-    sim = gp.Simulation(gas(2, 3, 0.01), gp.EventDriven())
-    sim.add((0.6, 0.6), (0.0, 0.0), 0.1, spin=3.0)
-    assert sim.state.spins[0] == 3.0
 
 
 @pytest.mark.thorough

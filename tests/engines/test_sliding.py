@@ -61,18 +61,6 @@ def test_momentum_is_conserved_with_that_of_the_walls(engine):
     assert sim.tally.wall_energy.sum() == pytest.approx(energy - sim.state.kinetic_energy, abs=1e-6)
 
 
-@pytest.mark.thorough
-def test_a_trajectory_has_the_shear(tmp_path):
-    path = gp.run(between(1.0, radius=0.2), ENGINES["event"], 1, 2.0, 0.5, tmp_path / "run.nc")
-    with gp.open_trajectory(path) as run:
-        assert run["wall_shear"].dims == ("frame", "face", "axis")
-        last = run["wall_shear"].values[-1]
-    sim = gp.Simulation(between(1.0, radius=0.2), ENGINES["event"], seed=1)
-    sim.advance(duration=2.0)
-    assert (last == sim.tally.wall_shear).all()
-    assert gp.analysis.profile(sim, "density", bins=4).sizes["position"] == 4
-
-
 @pytest.mark.interpreted
 def test_a_velocity_of_zero_changes_nothing():
     still, free = (between(0.0, radius=0.2) for _ in range(2))

@@ -138,18 +138,6 @@ def test_the_trace_is_that_of_energy_and_virial(engine):
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("search", ["boxes", "lists", "direct", "pairs"])
-def test_every_search_gives_the_same_sums(search):
-    first, other = (
-        gp.Simulation(SCENES["mixture"], gp.EventDriven(search=kind), seed=4, stress=True)
-        for kind in ("automatic", search)
-    )
-    for sim in (first, other):
-        sim.advance(duration=2.0)
-    assert np.array_equal(first.tally.stress_sum, other.tally.stress_sum)
-
-
-@pytest.mark.thorough
 def test_many_epochs_of_the_clocks_lose_nothing():
     """Until the clocks have started again a hundred times: the trace is exact to rounding."""
     sim = gp.Simulation(SCENES["discs"], gp.EventDriven(), seed=1, stress=True)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import gas, measured_compressibility, mixtures
+from scenes import gas, mixtures
 
 import gaspart as gp
-from gaspart import theory
 from gaspart.engines.step.limits import check_scene
 
 SEARCHES = (
@@ -115,45 +114,6 @@ def test_few_particles_follow_the_event_driven_engine(boundary):
         errors.append(np.abs(sim.state.unwrapped - exact.state.unwrapped).max())
     # contacts are met exactly at any step; what is left is rounding, which each contact magnifies
     assert errors[-1] < 1e-8
-
-
-@pytest.mark.thorough
-def test_rewinding_buys_accuracy():
-    """At a coarse step the pressure is off by some percent with it, and by several times that without."""
-    scene, eta = gas(3, 300, 0.1, arrangement="lattice"), 0.1
-    expected = theory.compressibility_factor(eta, 3)
-    off = {}
-    for rewind in (True, False):
-        sim = gp.Simulation(scene, gp.TimeStepped(0.05, rewind=rewind), seed=3)
-        sim.advance(duration=20.0)
-        sim.reset_tally()
-        sim.advance(duration=100.0)
-        tally = sim.tally
-        off[rewind] = abs(1 + tally.virial_sum / (3 * 300 * 1.0 * tally.time) - expected) / expected
-    assert off[True] < 0.03
-    assert off[False] > 2 * off[True]
-
-
-@pytest.mark.thorough
-def test_compressibility_factor_at_a_small_step():
-    count, eta, dimension = 400, 0.1, 3
-    sim = gp.Simulation(gas(dimension, count, eta, arrangement="lattice"), gp.TimeStepped(0.01), seed=13)
-    sim.advance(duration=20.0)
-    found, error = measured_compressibility(sim, blocks=12, duration=20.0)
-    expected = theory.compressibility_factor(eta, dimension)
-    expected += theory.finite_size_correction(eta, dimension, count)
-    assert error < 4e-3 * expected
-    assert abs(found - expected) < 3 * error
-
-
-@pytest.mark.interpreted
-def test_walls_reflect_exactly():
-    particle = gp.Particle((2.0, 5.0), (-1.0, 0.5), 0.5, mass=3.0)
-    sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=[particle]), gp.TimeStepped(0.25))
-    sim.advance(duration=4.0)
-    assert sim.state.positions.tolist() == [[3.0, 7.0]]
-    assert sim.tally.wall_hits.tolist() == [1, 0, 0, 0]
-    assert sim.tally.wall_impulse.tolist() == [6.0, 0.0, 0.0, 0.0]
 
 
 @pytest.mark.interpreted
@@ -268,23 +228,6 @@ def test_a_bouncing_ball_follows_its_parabolas():
         assert sim.tally.wall_hits.tolist() == exact.tally.wall_hits.tolist()
         assert np.allclose(sim.state.positions, exact.state.positions, atol=1e-9)
         assert np.allclose(sim.tally.wall_impulse, exact.tally.wall_impulse, rtol=1e-7)
-
-
-@pytest.mark.thorough
-def test_a_falling_gas_keeps_its_energy_whatever_the_search():
-    scene = gp.Scene(
-        gp.Container((12.0, 20.0), ("periodic", "wall")),
-        [gp.Species(40, 0.4, temperature=1.0), gp.Species(5, 0.6, mass=7.0, temperature=1.0)],
-        gravity=(0.0, -1.0),
-    )
-    ends = []
-    for search in ({}, {"skin": 0.1}, {"boxes_per_side": (5, 4)}):
-        sim = gp.Simulation(scene, gp.TimeStepped(0.01, **search), seed=2)
-        sim.advance(duration=10.0)
-        assert sim.tally.collisions > 100
-        assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-12)
-        ends.append(sim.state.positions)
-    assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
 @pytest.mark.thorough

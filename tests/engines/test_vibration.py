@@ -85,16 +85,6 @@ def test_modes_begin_at_their_temperature():
     assert (energies**2).mean() == pytest.approx(12.5, abs=3 * 12.5 * math.sqrt(5 / 4000))
 
 
-def test_files_keep_the_modes(tmp_path):
-    scene = metal(electrons=10, temperature=1.0)
-    whole = gp.Simulation(scene, gp.EventDriven(), seed=7)
-    whole.advance(until=9.0)
-    path = gp.run(scene, gp.EventDriven(), 7, 9.0, 3.0, tmp_path / "run.nc")
-    with gp.open_trajectory(path) as data:
-        assert data.vibrations.values[-1] == pytest.approx(whole.state.vibrations, rel=1e-6)
-        assert data.vibrations.dims == ("frame", "atom")
-
-
 def test_what_is_refused():
     for change, key in (
         ({"fixed": True, "speed": 1.0}, "speed"),

@@ -190,16 +190,6 @@ def test_a_gas_that_becomes_too_fast_for_its_step_stops_with_a_line_and_its_stat
     assert sim.time > 0.0 and sim.time % 30.0 == 0.0
 
 
-@pytest.mark.thorough
-def test_a_heated_gas_with_divided_steps_goes_on():
-    """The same, with its own steps."""
-    scene = driven(0.01, 1.0, 1e-3, 20)
-    sim = gp.Simulation(gp.Scene(scene.container, scene.species, thermostat=scene.thermostat), gp.DSMC(), 1)
-    make(sim, 30)
-    sim.check_invariants()
-    assert sim.state.kinetic_energy == pytest.approx(20 * sim.time, rel=0.5)
-
-
 @pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("settings", "adapt"),

@@ -184,12 +184,6 @@ def test_settings_are_refused_that_do_not_fit_the_scene():
             sim.advance(**limits)
 
 
-def test_an_engine_is_a_mapping_and_back():
-    engine = gp.engine_from_dict({"name": "dsmc", "cells_per_side": [2, 3, 4], "model": "enskog"})
-    assert engine == gp.DSMC(cells_per_side=(2, 3, 4), model="enskog")
-    assert gp.engine_from_dict(gp.engine_to_dict(engine)) == engine
-
-
 def test_an_empty_scene_and_one_particle():
     for count in (0, 1):
         scene = gp.Scene(BOX, [gp.Species(count, 0.1, temperature=1.0)])
