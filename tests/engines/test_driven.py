@@ -25,12 +25,7 @@ def channel(force=(0.0, 0.3), **rest):
 @pytest.mark.interpreted
 @pytest.mark.parametrize(
     "engine",
-    [
-        gp.EventDriven(),
-        gp.EventDriven(boxes_per_side=(1, 5)),
-        gp.TimeStepped(time_step=0.125),
-        gp.DSMC(0.125, 1),
-    ],
+    [gp.EventDriven(), gp.EventDriven(boxes_per_side=(1, 5)), gp.TimeStepped(0.125), gp.DSMC(0.125, 1)],
     ids=["event", "boxes", "step", "dsmc"],
 )
 @pytest.mark.parametrize("speed", [-4.0, 0.0, 2.0])
@@ -65,9 +60,8 @@ def free_flight_drift(time, length):
     the mean time since a wall, for which a particle of speed v stays free by 1 - abs(v) t / length."""
     s = time / length
     w = 0.5 / s**2
-    return length * (
-        s * erf(math.sqrt(w)) + (0.5 * exp1(w) + s**2 * math.expm1(-w)) / math.sqrt(2.0 * math.pi)
-    )
+    rest = (0.5 * exp1(w) + s**2 * math.expm1(-w)) / math.sqrt(2.0 * math.pi)
+    return length * (s * erf(math.sqrt(w)) + rest)
 
 
 @pytest.mark.thorough

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from referee import WORK, check_same
 from scenes import opened
 
 import gaspart as gp
@@ -248,16 +249,6 @@ DISCS = gp.Scene(
 """Discs between two reservoirs, a vacuum and a thermal face."""
 
 
-def same(one, other):
-    """Whether two simulations have the same bits."""
-    mine, its = ((it.state, it.tally, it.checkpoint()["entry_next"]) for it in (one, other))
-    fields = ("numbers", "positions", "velocities"), ("entries", "wall_hits", "wall_energy", "wall_impulse")
-    alike = [np.array_equal(mine[2], its[2])]
-    for n, names in enumerate(fields):
-        alike += [np.array_equal(getattr(mine[n], name), getattr(its[n], name)) for name in names]
-    return all(alike)
-
-
 @pytest.mark.thorough
 @given(opened(), st.integers(0, 1000))
 @settings(max_examples=15)
@@ -270,9 +261,7 @@ def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     other.restore(parts.checkpoint())
     other.advance(max_events=250, until=50.0)
     state, tally = whole.state, whole.tally
-    assert np.array_equal(state.positions, other.state.positions)
-    assert np.array_equal(state.numbers, other.state.numbers)
-    assert np.array_equal(tally.entries, other.tally.entries)
+    check_same(whole, other, WORK)
     assert state.count == scene.count + tally.entries.sum() - tally.wall_hits[opened].sum()
     exchanged = np.abs(tally.wall_energy).sum() + begun
     assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
@@ -332,7 +321,7 @@ def test_attempts_to_enter_are_events():
     assert 5 < tally.entries[0] < 0.1 * attempts
     for number in (1, 2, 6997, 13_000):
         parts.advance(max_events=number)
-    assert same(simulation, parts)
+    check_same(simulation, parts, WORK)
     simulation.check_invariants()
 
 
@@ -359,13 +348,9 @@ def test_numbers_beyond_the_first_block_are_found():
         ({"gravity": (0.0, -1.0)}, "gravity.*excludes open faces.*nothing acts on the gas"),
         ({"restitution": gp.Restitution(0.9)}, "restitution.normal.*excludes open faces.*smooth and elastic"),
         ({"faces": MIXED | {"y_low": gp.Thermal(1.0, velocity=(1.0, 0.0))}}, "a thermal one is at rest"),
-        (
-            {"faces": MIXED | {"y_high": gp.Open(1e20, 1.0)}},
-            "y_high.activity = 1e.20: must let at most",
-        ),
+        ({"faces": MIXED | {"y_high": gp.Open(1e20, 1.0)}}, "y_high.activity = 1e.20: must let at most"),
         ({"thermostat": gp.Thermostat(1.0, 0.1)}, "thermostat.*excludes open faces"),
         ({"species": [gp.Species(2, 0.5), gp.Species(1, 0.4)]}, "particles of one species"),
-        ({"species": [gp.Species(0, 0.5)]}, "particles of one species"),
         ({"species": [gp.Species(9, 0.5, polydispersity=0.1)]}, "polydispersity.*excludes open faces"),
         ({"species": [gp.Species(9, 0.5, fixed=True)]}, "fixed.*excludes open faces"),
         ({"particles": [gp.Particle((3.0, 3.0), (0.0, 0.0), 0.5)]}, "particles of one species"),

@@ -1,6 +1,5 @@
 """A piston: contacts of one ball that are computed otherwise, what is conserved, the same bits throughout."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -131,8 +130,6 @@ def test_an_ideal_gas_follows_its_adiabat():
 @pytest.mark.interpreted
 def test_what_a_piston_does_not_go_with_is_refused():
     scene = gas(gp.Piston(20.0, 0.6))
-    with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
-        gp.Simulation(scene, gp.TimeStepped(0.01))
     for key, value in (
         ("gravity", (-1.0, 0.0)),
         ("restitution", gp.Restitution(0.9)),
@@ -146,8 +143,5 @@ def test_what_a_piston_does_not_go_with_is_refused():
     for other in (gp.Piston(1.0, 1.0), gp.Vibrating(0.1, 1.0)):
         with pytest.raises(gp.SceneError, match="faces.*piston"):
             replace(scene, faces={**scene.faces, "x_low": other})
-    for mass, pressure in ((0.0, 1.0), (1.0, -1.0), (math.nan, 1.0)):
-        with pytest.raises(gp.SceneError, match="mass|pressure"):
-            gp.Piston(mass, pressure)
     with pytest.raises(gp.SceneError, match="faces.x_high.*choose other units"):
         gas(gp.Piston(1e-59, 1e59))

@@ -14,14 +14,7 @@ from gaspart import theory
 
 @pytest.mark.thorough
 def test_smooth_and_elastic_is_the_plain_engine():
-    scene = gas(3, 50, 0.1)
-    ends = []
-    for restitution in (None, gp.Restitution()):
-        sim = gp.Simulation(replace(scene, restitution=restitution), gp.EventDriven(), seed=1)
-        sim.advance(duration=20.0)
-        ends.append(sim.state.positions)
-    assert np.array_equal(*ends)
-    # and the law's own code, brought in by a fixed particle out of reach, agrees with it to rounding
+    """The law's own code, brought in by a fixed particle out of reach, agrees to rounding."""
     particle = gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
     other, far = (
         gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5),
@@ -270,9 +263,6 @@ def test_haffs_law():
 @pytest.mark.parametrize(
     ("change", "key"),
     [
-        ({"restitution": {"normal": 1.1}}, "restitution.normal"),
-        ({"restitution": {"normal": -0.1}}, "restitution.normal"),
-        ({"restitution": {"tangential": -1.1}}, "restitution.tangential"),
         ({"restitution": {"rough": 1}}, "restitution.rough"),
         ({"restitution": {"tangential": 0.0}, "centres_to_walls": True}, "centres_to_walls"),
         (
@@ -281,10 +271,6 @@ def test_haffs_law():
         ),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": True, "speed": 1.0}]}, "species[0].speed"),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": 1}]}, "species[0].fixed"),
-        (
-            {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]},
-            "particles[0].velocity",
-        ),
         (
             {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]},
             "particles[0].spin",

@@ -150,7 +150,7 @@ def test_inelastic_contacts_follow_the_event_driven_engine(normal):
 
 @pytest.mark.thorough
 def test_a_granular_gas_cools_as_in_the_event_driven_engine():
-    """Most of its energy goes, by the same path in both; and whatever the search, by the same bits."""
+    """Most of its energy goes, by the same path in both."""
     scene = gp.Scene(
         gp.Container((60.0, 60.0), ("wall", "periodic")),
         [gp.Species(600, 0.5, temperature=1.0)],
@@ -159,17 +159,11 @@ def test_a_granular_gas_cools_as_in_the_event_driven_engine():
     exact = gp.Simulation(scene, gp.EventDriven(), seed=3)
     exact.advance(duration=20.0)
     assert exact.state.kinetic_energy < 0.4 * exact.initial_state.kinetic_energy
-    ends = []
-    for search in ({}, {"skin": 0.3}, {"boxes_per_side": 20}):
-        sim = gp.Simulation(scene, gp.TimeStepped(0.02, **search), seed=3)
-        sim.advance(duration=10.0)
-        sim.reset_tally()
-        sim.advance(duration=10.0)
-        sim.check_invariants()
-        ends.append((sim.state.kinetic_energy, sim.tally.dissipated_energy))
-    assert ends[0] == ends[1] == ends[2]
+    sim = gp.Simulation(scene, gp.TimeStepped(0.02), seed=3)
+    sim.advance(duration=20.0)
+    sim.check_invariants()
     # 4000 contacts take a hundredth of the energy, each; their number and depth vary by less than 2 %
-    assert ends[0][0] == pytest.approx(exact.state.kinetic_energy, rel=0.02)
+    assert sim.state.kinetic_energy == pytest.approx(exact.state.kinetic_energy, rel=0.02)
 
 
 @pytest.mark.interpreted
@@ -189,7 +183,6 @@ def test_time_is_a_whole_number_of_steps():
         ({"time_step": 0.0}, "time_step"),
         ({"time_step": math.nan}, "time_step"),
         ({"time_step": 0.1, "precision": "float16"}, "precision"),
-        ({"time_step": 0.1, "rewind": 1}, "rewind"),
     ],
 )
 def test_settings_that_are_none(settings_, key):

@@ -135,8 +135,6 @@ def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
 @pytest.mark.interpreted
 def test_what_cannot_vibrate_is_refused():
     scene = ball({"y_low": SINE})
-    with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
-        gp.Simulation(scene, gp.TimeStepped(0.01))
     with pytest.raises(gp.SceneError, match="hard or thermal"):
         replace(ball({"y_low": SINE}, gravity=None), thermostat=gp.Thermostat(1.0, 0.1))
     with pytest.raises(gp.SceneError, match="periodic axis"):
@@ -145,11 +143,8 @@ def test_what_cannot_vibrate_is_refused():
         replace(scene, faces={"y_low": gp.Vibrating(10.0, 1.0), "y_high": gp.Vibrating(9.6, 1.0)})
     with pytest.raises(gp.SceneError, match="close packing"):
         replace(scene, particles=(), species=[gp.Species(120, 0.5)], faces={"y_low": gp.Vibrating(10.0, 1.0)})
-    for wrong in ((0.0, 1.0), (1.0, 0.0), (1e50, 1e-50)):
-        with pytest.raises(gp.SceneError, match="amplitude|period"):
-            gp.Vibrating(*wrong)
-    with pytest.raises(gp.SceneError, match="waveform"):
-        gp.Vibrating(1.0, 1.0, "square")
+    with pytest.raises(gp.SceneError, match="amplitude|period"):
+        gp.Vibrating(1e50, 1e-50)
 
 
 @pytest.mark.interpreted

@@ -124,33 +124,10 @@ def test_what_the_boltzmann_model_neglects_is_stated():
     assert not gp.DSMC(cells_per_side=8).remarks(gas(3, 20000, 0.001))
 
 
-@pytest.mark.parametrize(
-    ("key", "scene", "alternative"),
-    [
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Well(1.0, 0.1)}), '"step"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Sticky(1.0)}), '"step"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Vibrating(0.1, 1.0)}), '"event"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Piston(10.0, 1.0)}), '"event"'),
-        ("fixed", gp.Scene(BOX, [FEW, gp.Species(2, 0.1, fixed=True)]), '"step"'),
-        ("radius", gp.Scene(BOX, [FEW, gp.Species(2, 1.0, temperature=1.0)]), '"step"'),
-        (
-            "restitution.contact_duration",
-            gp.Scene(BOX, [FEW], restitution=gp.Restitution(0.9, contact_duration=0.1)),
-            '"event"',
-        ),
-        (
-            "walls",
-            gp.Scene(gp.Container((9.0, 9.0)), [FEW], walls=[gp.Wall((2.0, 2.0), (4.0, 4.0))]),
-            '"event"',
-        ),
-    ],
-)
-def test_what_it_does_not_model_is_refused_with_an_alternative(key, scene, alternative):
-    with pytest.raises(gp.SceneError) as refused:
+def test_sizes_that_are_too_different_are_refused_with_an_alternative():
+    scene = gp.Scene(BOX, [FEW, gp.Species(2, 1.0, temperature=1.0)])
+    with pytest.raises(gp.SceneError, match='^radius = [^\n]*"step"[^\n]*$'):
         gp.Simulation(scene, gp.DSMC(time_step=0.1))
-    assert refused.value.key == key
-    assert alternative in refused.value.rule
-    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(

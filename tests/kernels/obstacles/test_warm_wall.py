@@ -99,5 +99,3 @@ def test_what_is_refused():
     wall = {"start": [1.0, 1.0], "end": [5.0, 5.0], "temperature": 0.0}
     with pytest.raises(gp.SceneError, match=r"walls\[0\].temperature = 0.0: must be positive"):
         gp.Scene.from_dict({"container": {"lengths": [9.0, 9.0]}, "walls": [wall]})
-    with pytest.raises(gp.SceneError, match='walls = .*"event"'):
-        gp.Simulation(DISCS, gp.TimeStepped(time_step=0.01))

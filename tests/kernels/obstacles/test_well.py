@@ -100,10 +100,7 @@ def test_a_stuck_particle_is_set_free_with_all_its_energy(search, speed, held):
     ("change", "key"),
     [
         ({"faces": {"x_low": {"kind": "well", "depth": 1.0, "width": 8.0}}}, "faces.x_low.width"),
-        ({"faces": {"x_low": {"kind": "well", "depth": -1.0, "width": 1.0}}}, "faces.x_low.depth"),
-        ({"faces": {"y_low": {"kind": "well", "depth": 1.0, "width": 1.0}}}, "faces.y_low"),
         ({"faces": {"y_low": {"kind": "sticky", "momentum": 1.0}}}, "faces.y_low"),
-        ({"faces": {"x_low": {"kind": "sticky", "momentum": 0.0}}}, "faces.x_low.momentum"),
         ({"faces": {"x_low": {"kind": "well", "depth": 1.0}}}, "faces.x_low.width"),
     ],
 )
