@@ -15,13 +15,9 @@ from gaspart import theory
 @pytest.mark.thorough
 def test_smooth_and_elastic_is_the_plain_engine():
     """The law's own code, brought in by a fixed particle out of reach, agrees to rounding."""
-    particle = gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
-    other, far = (
-        gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5),
-        gp.Particle((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True),
-    )
-    ends = []
-    for particles in ([particle, other], [particle, other, far]):
+    both = [gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0), gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5)]
+    far, ends = gp.Particle((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True), []
+    for particles in (both, [*both, far]):
         sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
         sim.advance(duration=7.0)
         assert sim.tally.collisions == 1
@@ -29,9 +25,9 @@ def test_smooth_and_elastic_is_the_plain_engine():
     assert np.allclose(*ends, rtol=1e-14)
 
 
-def collided(law, one, other, side=40.0):
+def collided(law, one, other):
     """The state just after two particles, placed by hand, have met."""
-    scene = gp.Scene(gp.Container((side,) * len(one.position)), particles=[one, other], restitution=law)
+    scene = gp.Scene(gp.Container((40.0,) * len(one.position)), particles=[one, other], restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(max_events=1)
     assert sim.tally.collisions == 1
@@ -45,11 +41,7 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
     """Spencer 2022, Eqs. 22, 26 and 39, with unlike masses, radii, inertias and spins."""
     rng = np.random.default_rng(5)
     law = gp.Restitution(*law)
-    turn = (
-        [float(s) for s in rng.normal(size=2)]
-        if dimension == 2
-        else [tuple(s) for s in rng.normal(size=(2, 3))]
-    )
+    turn = rng.normal(size=2 if dimension == 2 else (2, 3)).tolist()
     one = gp.Particle((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
     other = gp.Particle((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
     sim = collided(law, one, other)
@@ -95,18 +87,16 @@ def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
     law, m, radius, inertia, spin = gp.Restitution(*law), 3.0, 0.5, 0.2, 1.7
     particle = gp.Particle((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
-    sim = gp.Simulation(
-        gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], restitution=law), gp.EventDriven()
-    )
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], restitution=law)
+    sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(max_events=1)
     slide = 1.0 - radius * spin  # v + R w x n, n = y
     along = -(1 + law.tangential) / (1 / m + radius**2 / inertia) * slide
     assert sim.state.velocities[0] == pytest.approx([1.0 + along / m, -2.0 * law.normal], abs=1e-14)
     assert sim.state.spins[0] == pytest.approx(spin - radius / inertia * along, abs=1e-13)
     assert sim.tally.wall_impulse[3] == pytest.approx((1 + law.normal) * m * 2.0)
-    assert sim.state.energy + sim.tally.dissipated_energy == pytest.approx(
-        sim.initial_state.energy, rel=1e-14
-    )
+    kept = sim.state.energy + sim.tally.dissipated_energy
+    assert kept == pytest.approx(sim.initial_state.energy, rel=1e-14)
     sim.advance(duration=1.0)
     sim.check_invariants()
 
@@ -114,13 +104,11 @@ def test_a_wall_hit_follows_its_formula(law):
 @pytest.mark.interpreted
 def test_a_fixed_particle_is_a_wall():
     for dimension in (2, 3):
-        post = gp.Particle((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
-        ball = gp.Particle(
-            (2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0
-        )
-        sim = gp.Simulation(
-            gp.Scene(gp.Container((10.0,) * dimension), particles=[post, ball]), gp.EventDriven()
-        )
+        middle, still = (5.0,) * dimension, (0.0,) * dimension
+        post = gp.Particle(middle, still, 1.0, fixed=True)
+        ball = gp.Particle((2.0, *middle[1:]), (1.0, *still[1:]), 0.5, mass=7.0)
+        scene = gp.Scene(gp.Container((10.0,) * dimension), particles=[post, ball])
+        sim = gp.Simulation(scene, gp.EventDriven())
         sim.advance(duration=2.5)
         assert sim.tally.collisions == 1
         assert sim.state.positions[1, 0] == pytest.approx(2.5, rel=1e-15)
@@ -143,9 +131,8 @@ def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
         assert sim.events["time"] == pytest.approx([math.sqrt(8.0 - 2.0 - height)], rel=1e-14)
         speed = 2.0 * sim.time
         n = np.array([0.3, height]) / 1.5
-        assert sim.state.velocities[1] == pytest.approx(
-            np.array([0, -speed]) + 2 * speed * n[1] * n, rel=1e-13
-        )
+        expected = np.array([0, -speed]) + 2 * speed * n[1] * n
+        assert sim.state.velocities[1] == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.interpreted
@@ -166,31 +153,34 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
     sim.check_invariants()
 
 
+def three_on_a_line(normal, middle=0.0):
+    """Discs of which the outer ones come to the middle one, which has a velocity."""
+    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
+    law = gp.Restitution(normal)
+    return gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=law)
+
+
 @pytest.mark.interpreted
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 @pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
     """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids
     A 4, 496 (1992))."""
-    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(normal))
     for search in ("boxes", "pairs"):
-        sim = gp.Simulation(scene, gp.EventDriven(search))
+        sim = gp.Simulation(three_on_a_line(normal, middle), gp.EventDriven(search))
         with pytest.raises(gp.SimulationError, match="collapse"):
             sim.advance(duration=10.0)
         assert 1.0 < sim.time < 3.0
         assert np.isfinite(sim.state.positions).all()
         sim.check_invariants()
-    sim = gp.Simulation(replace(scene, restitution=gp.Restitution(0.1)), gp.EventDriven())
+    sim = gp.Simulation(three_on_a_line(0.1, middle), gp.EventDriven())
     sim.advance(duration=10.0)  # above the threshold
 
 
 @pytest.mark.interpreted
 def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     """The watch's counts are in the checkpoint; without them a run resumed in time would never collapse."""
-    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(0.05))
-    whole, resumed = (gp.Simulation(scene, gp.EventDriven()) for _ in range(2))
+    whole, resumed = (gp.Simulation(three_on_a_line(0.05), gp.EventDriven()) for _ in range(2))
     with pytest.raises(gp.SimulationError, match="collapse"):
         whole.advance(duration=10.0)
     with pytest.raises(gp.SimulationError, match="collapse"):
@@ -208,11 +198,7 @@ def test_events_tell_spins(dimension):
     spins, particles = sim.events["spins"], sim.events["particles"]
     assert spins.shape == (100, 2) + (3,) * (dimension == 3)
     assert np.array_equal(np.isnan(spins[:, 1]).reshape(100, -1).any(axis=1), particles[:, 1] < 0)
-    last = {
-        particle: spin
-        for pair, of in zip(particles, spins, strict=True)
-        for particle, spin in zip(pair, of, strict=True)
-    }
+    last = dict(zip(particles.ravel(), spins.reshape(200, *spins.shape[2:]), strict=True))
     for particle in range(20):
         assert np.array_equal(sim.state.spins[particle], last.get(particle, 0 * sim.state.spins[particle]))
     smooth = events_of(replace(scene, restitution=gp.Restitution(0.9)), "boxes", 10)
@@ -231,11 +217,8 @@ def test_a_stack_at_rest_is_reported_not_looped_over():
 @pytest.mark.interpreted
 def test_particles_that_stick_fly_on_together():
     """e = 0, head on: they stay together and never meet again for rounding's sake."""
-    sim = collided(
-        gp.Restitution(0.0),
-        gp.Particle((5.0, 5.3), (1.0, 0.1), 0.5),
-        gp.Particle((9.0, 5.3), (0.3, 0.1), 0.5),
-    )
+    one, other = gp.Particle((5.0, 5.3), (1.0, 0.1), 0.5), gp.Particle((9.0, 5.3), (0.3, 0.1), 0.5)
+    sim = collided(gp.Restitution(0.0), one, other)
     assert sim.state.velocities == pytest.approx(np.array([[0.65, 0.1], [0.65, 0.1]]), rel=1e-13)
     sim.advance(duration=20.0)
     assert sim.tally.collisions == 1

@@ -16,15 +16,14 @@ from gaspart.trajectory.run import simulation_of
 
 CUBE, FLAT = gp.Container((4.0,) * 3, "periodic"), gp.Container((9.0, 7.0), "periodic")
 PAIR = [gp.Species(20, 0.3, temperature=1.0), gp.Species(10, 0.2, mass=3.0, temperature=1.0)]
+UNEQUAL = [replace(kind, polydispersity=0.3) for kind in PAIR]
 SCENES = {
     "spheres": gp.Scene(CUBE, [PAIR[0]]),
     "mixture": gp.Scene(CUBE, PAIR),
     "discs": gp.Scene(FLAT, PAIR),
     "rough": gp.Scene(FLAT, PAIR, restitution=gp.Restitution(0.9, 0.5, contact_duration=0.0)),
     "sizes": gp.Scene(CUBE, [replace(PAIR[0], polydispersity=0.4)]),
-    "inelastic sizes": gp.Scene(
-        FLAT, [replace(kind, polydispersity=0.3) for kind in PAIR], restitution=gp.Restitution(0.8)
-    ),
+    "inelastic sizes": gp.Scene(FLAT, UNEQUAL, restitution=gp.Restitution(0.8)),
 }
 ENGINES = {
     "event": gp.EventDriven(),
@@ -152,11 +151,7 @@ def test_many_epochs_of_the_clocks_lose_nothing():
     ("scene", "engine", "rule"),
     [
         (gas(2, 20, 0.1), gp.TimeStepped(time_step=0.01), "stress = True: .*engine"),
-        (
-            replace(gas(2, 20, 0.1), container=gp.Container((9.0, 9.0), "wall")),
-            gp.EventDriven(),
-            "boundary = .*periodic",
-        ),
+        (gas(2, 20, 0.1, "wall"), gp.EventDriven(), "boundary = .*periodic"),
         (
             replace(gas(2, 20, 0.1), thermostat=gp.Thermostat(1.0, 0.03)),
             gp.EventDriven(),
@@ -171,16 +166,8 @@ def test_what_cannot_be_tallied_is_refused(scene, engine, rule):
 
 def run(path, scene, engine, interval, lags, frames, per_frame, follow=1):
     """A trajectory with correlations of the stress."""
-    return gp.run(
-        scene,
-        engine,
-        seed=3,
-        duration=interval * per_frame * frames,
-        sample_interval=interval * per_frame,
-        follow=follow,
-        correlations=gp.Correlations(interval, lags, stress=True),
-        path=path,
-    )
+    asked, sample = gp.Correlations(interval, lags, stress=True), interval * per_frame
+    return gp.run(scene, engine, 3, sample * frames, sample, path, follow=follow, correlations=asked)
 
 
 @pytest.mark.thorough

@@ -21,6 +21,7 @@ SEARCHES = (
     {"skin": 0.05},
     {"skin": 2.0},
 )
+TWO = gp.Particle((2.0, 5.0), (1.0, 0.1), 0.5), gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0)
 
 
 @pytest.mark.thorough
@@ -85,11 +86,7 @@ def test_energy_is_kept_to_rounding(precision, rounding):
 @pytest.mark.interpreted
 def test_a_rewound_collision_is_exact():
     """Wherever in the step the contact falls, the particles go on as if it had been met exactly."""
-    particles = [
-        gp.Particle((2.0, 5.0), (1.0, 0.1), 0.5),
-        gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
-    ]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles)
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=TWO)
     exact = gp.Simulation(scene, gp.EventDriven())
     exact.advance(duration=3.0)
     for time_step in (0.25, 0.03, 0.001):
@@ -120,9 +117,8 @@ def test_few_particles_follow_the_event_driven_engine(boundary):
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
     particle = gp.Particle((2.0, 5.0), (130.0, 0.0), 0.5)
-    sim = gp.Simulation(
-        gp.Scene(gp.Container((10.0, 10.0), boundary), particles=[particle]), gp.TimeStepped(1.0)
-    )
+    scene = gp.Scene(gp.Container((10.0, 10.0), boundary), particles=[particle])
+    sim = gp.Simulation(scene, gp.TimeStepped(1.0))
     for _ in range(20):
         sim.advance(duration=1.0)
         assert 0 <= sim.state.positions[0, 0] <= 10
@@ -132,11 +128,7 @@ def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):
 @pytest.mark.parametrize("normal", [0.0, 0.5, 0.9])
 def test_inelastic_contacts_follow_the_event_driven_engine(normal):
     """Two particles among walls: what each contact and each wall takes, and where the particles are then."""
-    particles = [
-        gp.Particle((2.0, 5.0), (1.0, 0.1), 0.5),
-        gp.Particle((6.0, 5.4), (-0.5, 0.0), 0.5, mass=3.0),
-    ]
-    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=particles, restitution=gp.Restitution(normal))
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=TWO, restitution=gp.Restitution(normal))
     exact, sim = gp.Simulation(scene, gp.EventDriven()), gp.Simulation(scene, gp.TimeStepped(0.02))
     for each in (exact, sim):
         each.advance(duration=20.0)
@@ -192,9 +184,12 @@ def test_settings_that_are_none(settings_, key):
 
 @pytest.mark.interpreted
 def test_what_it_cannot_do_it_refuses():
-    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.5, temperature=1.0)], gravity=(0.0, -1.0))
-    with pytest.raises(gp.SceneError, match="restitution.*gravity"):
-        gp.Simulation(replace(scene, restitution=gp.Restitution(0.9)), gp.TimeStepped(0.1))
+    falling = replace(gas(2, 5, 0.01, "wall"), gravity=(0.0, -1.0))
+    fixed = replace(falling, species=[gp.Species(2, 0.3, fixed=True)])
+    lossy = replace(falling, restitution=gp.Restitution(0.9))
+    for scene, key in ((lossy, "restitution.normal"), (fixed, "fixed")):
+        with pytest.raises(gp.SceneError, match=f'{key} = .*gravity.*"event" .*engine'):
+            gp.Simulation(scene, gp.TimeStepped(0.1))
     sim = gp.Simulation(gas(2, 5, 0.01), gp.TimeStepped(0.1), seed=1)
     with pytest.raises(gp.SceneError, match="max_events"):
         sim.advance(max_events=3)
@@ -259,9 +254,10 @@ def test_more_passes_find_what_one_misses():
     ("count", "eta", "time_step"), [(100, 0.01, 0.6), (200, 0.4, 0.5), (32, 0.724, 0.014)]
 )
 def test_a_step_that_is_too_long_is_refused(count, eta, time_step):
+    scene = gas(3, count, eta, arrangement="lattice")
     with pytest.raises(gp.SceneError, match=r"time_step = .* a step of \S+ would do") as refused:
-        gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(time_step), seed=1)
+        gp.Simulation(scene, gp.TimeStepped(time_step), seed=1)
     would_do = float(str(refused.value).split("a step of ")[1].split()[0])
-    gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(0.98 * would_do), seed=1)
+    gp.Simulation(scene, gp.TimeStepped(0.98 * would_do), seed=1)
     with pytest.warns(UserWarning, match="would do"):
-        gp.Simulation(gas(3, count, eta, arrangement="lattice"), gp.TimeStepped(1.1 * would_do), seed=1)
+        gp.Simulation(scene, gp.TimeStepped(1.1 * would_do), seed=1)

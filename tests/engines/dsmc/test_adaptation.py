@@ -13,25 +13,20 @@ import gaspart as gp
 from gaspart.engines.dsmc.defaults import LONGEST, MOST, ROOM, rates, reach_of
 from gaspart.engines.dsmc.resolution import EPOCH
 
+SLIT = ("periodic", "periodic", "wall")
+
 
 def driven(speed=0.01, power=0.05, interval=0.1, count=150):
     """A granular gas that starts cold and is heated 1e4 times."""
-    return gp.Scene(
-        gp.Container((20.0, 20.0, 20.0), "periodic"),
-        [gp.Species(count, 0.5, speed=speed)],
-        restitution=gp.Restitution(0.7),
-        thermostat=gp.Thermostat(power, interval),
-    )
+    rest = {"restitution": gp.Restitution(0.7), "thermostat": gp.Thermostat(power, interval)}
+    container = gp.Container((20.0, 20.0, 20.0), "periodic")
+    return gp.Scene(container, [gp.Species(count, 0.5, speed=speed)], **rest)
 
 
-def falling(count=600, radius=0.05):
+def falling():
     """A gas that falls from rest into a tenth of its container, by hot faces that keep it there."""
-    return gp.Scene(
-        gp.Container((6.0, 6.0, 20.0), ("periodic", "periodic", "wall")),
-        [gp.Species(count, radius, temperature=1.0)],
-        gravity=(0.0, 0.0, -1.0),
-        faces={"z_low": gp.Thermal(1.0)},
-    )
+    container, gas = gp.Container((6.0, 6.0, 20.0), SLIT), gp.Species(600, 0.05, temperature=1.0)
+    return gp.Scene(container, [gas], gravity=(0.0, 0.0, -1.0), faces={"z_low": gp.Thermal(1.0)})
 
 
 def check_split(scene, engine, steps, threads):
@@ -131,9 +126,7 @@ def test_a_step_of_its_own_allows_for_what_accelerates_the_particles():
     assert way == pytest.approx(LONGEST * rates(scene, False).path, rel=2e-3)
     fall = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)], gravity=(0.0, -2.0))
     assert gp.DSMC().for_scene(fall).time_step == pytest.approx(math.sqrt(9.0 / 8.0 / 2.0), rel=2e-3)
-    with pytest.raises(
-        gp.SceneError, match="time_step = None: must be given for particles that start at rest, and"
-    ):
+    with pytest.raises(gp.SceneError, match="time_step = None: must be given for particles that start at "):
         gp.DSMC().for_scene(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)]))
 
 

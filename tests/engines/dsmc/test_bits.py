@@ -14,19 +14,15 @@ from gaspart.engines.dsmc import arrays
 
 
 @st.composite
-def scenes(draw, most=60):
+def scenes(draw):
     """Scenes of two kinds, so that few kernels are compiled: rough discs that fall between thermal faces, and
     elastic spheres of one or two species between walls or none."""
     dimension = draw(st.sampled_from([2, 3]))
     lengths = draw(st.lists(st.floats(4.0, 9.0), min_size=dimension, max_size=dimension))
     boundary = draw(st.lists(st.sampled_from(["wall", "periodic"]), min_size=dimension, max_size=dimension))
-    radii = st.floats(0.01, 0.1)
-    species = [
-        gp.Species(
-            draw(st.integers(1, most)), draw(radii), mass=draw(st.sampled_from([1.0, 0.1])), temperature=1.0
-        )
-        for _ in range(draw(st.integers(1, 2)))
-    ]
+    radii, masses = st.floats(0.01, 0.1), st.sampled_from([1.0, 0.1])
+    kinds = st.builds(gp.Species, st.integers(1, 60), radii, mass=masses, temperature=st.just(1.0))
+    species = draw(st.lists(kinds, min_size=1, max_size=2))
     if dimension == 3:
         return gp.Scene(gp.Container(lengths, boundary), species)
     boundary[1] = "wall"
@@ -83,8 +79,7 @@ DENSE = {"model": "enskog", "cells_per_side": (16, 2, 2)}
 @pytest.mark.parametrize("boundary", ["periodic", "wall"])
 @pytest.mark.filterwarnings("ignore:gaspart")
 def test_threads_share_the_slabs_of_a_dense_gas(boundary):
-    """With the bits of one thread, and as many collisions as cell after cell gives, of which none exceeds its
-    bound."""
+    """With the bits of one thread, and as many collisions as cell after cell gives, none beyond its bound."""
     ends = []
     for threads in (1, 2, 3):
         sim = advanced(gas(3, 3000, 0.1, boundary), 40, threads=threads, **DENSE)

@@ -100,9 +100,7 @@ def test_no_heat_flows_in_a_uniform_gas(threads):
 
 
 def test_a_gas_denser_than_the_contact_values_is_refused():
-    crystal = gp.Scene(
-        gp.Container((3.0482, 5.2796), boundary="periodic"),
-        [gp.Species(18, 0.5, temperature=1.0, arrangement="lattice")],
-    )
+    discs = gp.Species(18, 0.5, temperature=1.0, arrangement="lattice")
+    crystal = gp.Scene(gp.Container((3.0482, 5.2796), "periodic"), [discs])
     with pytest.raises(gp.SceneError, match=r"packing_fraction = 0.8785: .*up to 0.7"):
         gp.Simulation(crystal, gp.DSMC(model="enskog"))

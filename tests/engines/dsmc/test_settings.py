@@ -25,15 +25,13 @@ def test_rates_are_those_of_theory(dimension):
     assert found.speed == pytest.approx(float(theory.mean_speed(dimension)), rel=0.02)
 
 
-PLATES = {"boundary": ("periodic", "periodic", "wall")}
 SLIDING = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}
 
 
-def plates(count=2000, radius=0.178, faces=SLIDING, **more):
+def plates(radius=0.178, faces=SLIDING, **more):
     """A gas between plates, eleven mean free paths apart."""
-    container = gp.Container((10.0, 10.0, 10.0), **PLATES)
-    species = [gp.Species(count, radius, temperature=1.0)]
-    return gp.Scene(container, species, faces=faces, **more)
+    container = gp.Container((10.0, 10.0, 10.0), ("periodic", "periodic", "wall"))
+    return gp.Scene(container, [gp.Species(2000, radius, temperature=1.0)], faces=faces, **more)
 
 
 def of_scene(scene, **settings):
@@ -69,9 +67,8 @@ def test_no_other_cells_have_smaller_errors(scene, model):
 
 def test_the_predicted_error_is_that_of_the_literature():
     scene = gas(3, 1000, 0.001)
-    medium = Medium(
-        "boltzmann", scene, Rates(1.0, math.sqrt(8.0 / math.pi), math.sqrt(8.0 / math.pi)), 1000.0
-    )
+    speed = math.sqrt(8.0 / math.pi)
+    medium = Medium("boltzmann", scene, Rates(1.0, speed, speed), 1000.0)
     side = scene.container.lengths[0]
     width = side / 4 / medium.gas_rates.path
     assert medium.errors((4,) * 3, 1e-9).width == pytest.approx(16.0 / (45.0 * math.pi) * width**2)
