@@ -35,13 +35,9 @@ def granular_scene(rng, dimension=2):
         species.append(gp.Species(int(rng.integers(1, 4)), radius, fixed=True))
     normal = float(rng.choice([0.0, 0.1, 0.5, 0.8, 0.95, 0.99, rng.random()]))
     law = gp.Restitution(normal, float(rng.choice([-1.0, -1.0, -0.5, 0.0, 0.5, 0.9, 1.0])))
-    return gp.Scene(
-        gp.Container(tuple(lengths)),
-        species,
-        gravity=tuple(rng.choice([0.1, 1.0, 5.0]) * gravity),
-        restitution=law,
-        walls=[wall_of(rng, lengths) for _ in range(int(rng.integers(1, 4)))],
-    )
+    rest = {"gravity": tuple(rng.choice([0.1, 1.0, 5.0]) * gravity), "restitution": law}
+    walls = [wall_of(rng, lengths) for _ in range(int(rng.integers(1, 4)))]
+    return gp.Scene(gp.Container(tuple(lengths)), species, walls=walls, **rest)
 
 
 def wall_of(rng, lengths):
@@ -127,12 +123,9 @@ def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
     """Six discs at rest on a floor, which gravity presses slightly against a wall, and one that bounces off
     the row. They had 3e5 collisions before the time 0.125, ever slower ones in ever smaller gaps."""
     row = [gp.Particle((0.5 + n * (1.0 + 1e-13), 0.5), (0.0, 0.0), 0.5) for n in range(6)]
-    scene = gp.Scene(
-        gp.Container((12.0, 5.0)),
-        particles=[*row, gp.Particle((8.0, 0.5), (-1.0, 0.0), 0.5)],
-        gravity=(-0.1, -5.0),
-        restitution=gp.Restitution(0.95, contact_duration=0.0036),
-    )
+    row.append(gp.Particle((8.0, 0.5), (-1.0, 0.0), 0.5))
+    law = gp.Restitution(0.95, contact_duration=0.0036)
+    scene = gp.Scene(gp.Container((12.0, 5.0)), particles=row, gravity=(-0.1, -5.0), restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     energy = sim.state.energy
     sim.advance(until=10.0, max_events=300_000)
@@ -144,13 +137,9 @@ def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
 def test_a_stack_stays_at_rest_on_an_interior_wall():
     """Ten discs, each exactly on the one below."""
     particles = [gp.Particle((5.0, math.pi + 0.5 + n), (0.0, 0.0), 0.5) for n in range(10)]
-    scene = gp.Scene(
-        gp.Container((10.0, 16.0)),
-        particles=particles,
-        gravity=(0.0, -1.0),
-        restitution=gp.Restitution(0.8, 0.5, contact_duration=0.1),
-        walls=[gp.Wall((2.0, math.pi), (8.0, math.pi))],
-    )
+    rest = {"gravity": (0.0, -1.0), "restitution": gp.Restitution(0.8, 0.5, contact_duration=0.1)}
+    walls = [gp.Wall((2.0, math.pi), (8.0, math.pi))]
+    scene = gp.Scene(gp.Container((10.0, 16.0)), particles=particles, walls=walls, **rest)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(duration=TIME)
     assert sim.state.positions == pytest.approx(sim.initial_state.positions, abs=1e-5)

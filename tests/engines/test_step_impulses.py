@@ -29,10 +29,10 @@ STEPPED = {
 }
 
 
-def started(scene, axis="z", step=STEP, bins=BINS, **settings):
-    """A simulation, which keeps its impulses in so many bins, or none."""
-    asked = [ImpulseTally(axis, bins)] if bins else []
-    return gp.Simulation(scene, gp.TimeStepped(step, **settings), seed=3, tallies=asked)
+def started(scene, axis="z", step=STEP, bins=BINS, initial=None, **settings):
+    """A simulation, which keeps its impulses in so many bins."""
+    engine, tallies = gp.TimeStepped(step, **settings), [ImpulseTally(axis, bins)]
+    return gp.Simulation(scene, engine, seed=3, tallies=tallies, initial=initial)
 
 
 def pull_of(scene, axis):
@@ -127,8 +127,7 @@ def test_halves_of_a_gas_add_up_to_it():
     halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
     found = []
     for scene in (FALLING, halves):
-        asked = [ImpulseTally("z", BINS)]
-        simulation = gp.Simulation(scene, gp.TimeStepped(0.01), initial=start, tallies=asked)
+        simulation = started(scene, step=0.01, initial=start)
         simulation.advance(until=8.0)
         found.append(simulation.tally.momentum_flux_sum)
     assert found[1].shape == (2, BINS) and found[1].any(axis=1).all()

@@ -228,25 +228,6 @@ def test_green_and_kubo_agree_with_helfand(tmp_path):
 
 
 @pytest.mark.thorough
-def test_coefficients_are_those_of_a_gas_at_rest(tmp_path):
-    """A drift of the initial state changes viscosities, conductivity and pressure tensor by no more than what
-    collisions have made of rounding: until it has grown, after some hundred of them."""
-    scene, drift = gas(3, 40, 0.2), np.array([3.0, -2.0, 1.5])
-    still = gp.Simulation(scene, gp.EventDriven(), 3).initial_state
-    moved = replace(still, velocities=still.velocities + drift)
-    found = []
-    for name, state in (("still", still), ("moved", moved)):
-        asked = gp.Correlations(0.0125, 4, stress=True)
-        to = tmp_path / f"{name}.nc"
-        gp.run(scene, gp.EventDriven(), 3, 1.25, 0.0625, to, correlations=asked, initial=state, follow=1)
-        names = ("shear_viscosity", "bulk_viscosity", "thermal_conductivity", "pressure_tensor")
-        found.append([getattr(gp.analysis, each)(to, start=0.0) for each in names])
-    for one, two in zip(*found, strict=True):
-        assert two.estimate.values == pytest.approx(one.estimate.values, rel=1e-6)
-        assert two.theory.values == pytest.approx(one.theory.values, rel=1e-9)
-
-
-@pytest.mark.thorough
 def test_older_files_are_measured_rightly_or_refused(tmp_path):
     """Without a mean velocity their fluxes are the same; with one, they are refused."""
     for exact in (True, False):

@@ -97,22 +97,6 @@ def test_a_rewound_collision_is_exact():
         assert np.allclose(sim.state.positions, exact.state.positions, atol=1e-12)
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("boundary", ["wall", "periodic"])
-def test_few_particles_follow_the_event_driven_engine(boundary):
-    scene = gas(2, 6, 0.1, boundary)
-    exact = gp.Simulation(scene, gp.EventDriven(), seed=7)
-    exact.advance(duration=5.0)
-    assert exact.tally.collisions >= 4
-    errors = []
-    for time_step in (0.01, 0.001, 0.0001):
-        sim = gp.Simulation(scene, gp.TimeStepped(time_step), seed=7)
-        sim.advance(duration=5.0)
-        errors.append(np.abs(sim.state.unwrapped - exact.state.unwrapped).max())
-    # contacts are met exactly at any step; what is left is rounding, which each contact magnifies
-    assert errors[-1] < 1e-8
-
-
 @pytest.mark.interpreted
 @pytest.mark.parametrize("boundary", ["wall", "periodic"])
 def test_a_step_longer_than_the_container_leaves_no_particle_outside(boundary):

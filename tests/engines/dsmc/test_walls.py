@@ -30,22 +30,6 @@ def test_free_molecules_carry_heat_between_thermal_faces(components):
     sim.check_invariants()
 
 
-def test_a_gas_that_falls_has_the_barometric_profile():
-    container = gp.Container((20.0, 20.0, 20.0), ("periodic", "periodic", "wall"))
-    species = [gp.Species(6000, 0.02, temperature=1.0)]
-    scene = gp.Scene(container, species, gravity=(0.0, 0.0, -0.3), faces={"z_low": gp.Thermal(1.0)})
-    sim = advanced(scene, 1, settle=800, time_step=0.5, cells_per_side=(4, 4, 20))
-    heights = []
-    for _ in range(40):
-        sim.advance(duration=20.0)
-        heights.append((sim.state.positions[:, 2] - 0.02).mean())
-    scale, top = 1.0 / 0.3, 20.0 - 0.04
-    expected = scale - top / math.expm1(top / scale)
-    error = np.std(heights) / math.sqrt(len(heights) / 4)
-    assert np.mean(heights) == pytest.approx(expected, abs=4.0 * error)
-    sim.check_invariants()
-
-
 def light_in_a_hundred(seed=1):
     """A hundred particles that hardly move and one of the mass 1e-12, so small that nothing collides."""
     kinds = [gp.Species(100, 1e-6, temperature=1.0), gp.Species(1, 1e-6, mass=1e-12, temperature=1.0)]
