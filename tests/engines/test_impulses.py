@@ -23,12 +23,6 @@ SCENES = {
 }
 
 
-def started(scene, axis, **more):
-    """A simulation, which keeps its impulses."""
-    tallies = [ImpulseTally(axis, BINS)]
-    return gp.Simulation(scene, gp.EventDriven(search="pairs"), seed=3, tallies=tallies, **more)
-
-
 def flown(scene, axis, states):
     """(species, BINS) what flies through planes between the first and the last of the states."""
     total = 0.0
@@ -42,27 +36,11 @@ def flown(scene, axis, states):
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tally_is_the_momentum_that_particles_carry_through_planes(name):
     scene, axis = SCENES[name]
-    simulation = started(scene, axis)
+    simulation = gp.Simulation(scene, gp.EventDriven("pairs"), seed=3, tallies=[ImpulseTally(axis, BINS)])
     simulation.advance(max_events=80)
     wanted = flown(scene, "xyz".index(axis), list(simulation.replay(by="event")))
     found = simulation.tally.momentum_flux_sum
     assert found == pytest.approx(wanted, abs=(5e-3 if scene.gravity else 1e-10) * np.abs(wanted).max())
-
-
-@pytest.mark.interpreted
-def test_halves_of_a_gas_add_up_to_it_in_any_order_of_its_particles():
-    start = started(FALLING, "z").initial_state
-    halves = replace(FALLING, species=[replace(MIXTURE[0], count=8), replace(MIXTURE[0], count=4)])
-    order = np.random.default_rng(2).permutation(12)
-    found = []
-    for scene, turn in ((FALLING, np.arange(12)), (halves, np.arange(12)), (FALLING, order)):
-        initial = replace(start, positions=start.positions[turn], velocities=start.velocities[turn])
-        simulation = started(scene, "z", initial=initial)
-        simulation.advance(max_events=60)
-        found.append(simulation.tally.momentum_flux_sum)
-    assert found[1].shape == (2, BINS) and found[1].any(axis=1).all()
-    assert found[1].sum(axis=0) == pytest.approx(found[0][0], rel=1e-9)
-    assert found[2] == pytest.approx(found[0], rel=1e-9)
 
 
 FIXED = gp.Particle((1.5, 1.5, 2.0), (0.0,) * 3, 0.3, fixed=True)
