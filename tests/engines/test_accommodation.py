@@ -1,4 +1,4 @@
-"""Thermal faces that mirror a part of the particles (Maxwell's model) or slide: fractions, fluxes, refusals."""
+"""Thermal faces that mirror a part of the particles (Maxwell's model) or slide: fractions and fluxes."""
 
 import math
 
