@@ -92,15 +92,6 @@ def test_the_default_follows_from_the_scales():
 
 
 @pytest.mark.thorough
-def test_without_it_a_collapse_is_reported():
-    sim = gp.Simulation(pile(duration=0.0), gp.EventDriven(), seed=1)
-    sim.record_events = True  # with the kernels of the searches' comparison
-    with pytest.raises(gp.SimulationError, match="collapse"):
-        sim.advance(duration=1000.0)
-    assert sim.tally.elastic_contacts == 0
-
-
-@pytest.mark.thorough
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_stack_at_rest_stays_at_rest(dimension):
     """Ten particles, each exactly on the one below."""
