@@ -128,8 +128,7 @@ def test_a_spin_that_sets_a_gas_in_motion_is_no_collapse():
 
 @pytest.mark.interpreted
 def test_epochs_are_those_of_shared_energy():
-    """One particle of mass 2^40 in 63 of mass 1, which are at rest, can make them 2^14 times faster than the
-    rms speed is now."""
+    """A particle of mass 2^40 can make 63 of mass 1, at rest, 2^14 times faster than the rms speed is now."""
     masses = np.append(np.ones(63), 2.0**40)
     epochs = Epochs(alone(5.0), masses, 0.0)
     velocities = np.zeros((64, 2))

@@ -67,8 +67,7 @@ def test_in_free_flight_particles_drift_as_their_time_since_a_plate(engine):
 
 
 def flow_in_blocks(sim, edges, blocks, samples, interval):
-    """Of discs in a channel (blocks, bins): their number, mean velocity along it, and temperature about
-    it."""
+    """Of discs in a channel (blocks, bins): number, mean velocity along it, and temperature about it."""
     found = []
     for _ in range(blocks):
         sums = np.zeros((3, len(edges) - 1))

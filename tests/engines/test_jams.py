@@ -12,8 +12,7 @@ COUNT = 4  # of discs in a row
 
 
 def row_and_disc(mass, width=float(COUNT)):
-    """A row that fills the width of the container with a little energy, and a disc that falls on its second
-    one at a time of 3."""
+    """A row that fills the container's width, with a little energy; a disc hits its second one at 3."""
     row = [gp.Particle((0.5 + n, 0.5 + 1e-3 * (n % 2)), (0.01 * (-1) ** n, 0.0), 0.5) for n in range(COUNT)]
     disc = gp.Particle((1.5, 1.5 + 4.5), (0.0, 0.0), 0.5, mass)
     container = gp.Container((width, 12.0))

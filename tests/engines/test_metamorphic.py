@@ -1,8 +1,5 @@
-"""What must not matter: units, mirrors, names of axes and particles; and how long a run remembers its start.
-
-One scene of two dimensions with all that a contact may have: gravity, restitution, spins, unlike masses
-and moments of inertia, a fixed particle, and an interior wall with its ends.
-"""
+"""What must not matter, mirrors, names of axes and particles, of a scene with all that a contact may have:
+gravity, restitution, spins, unlike masses and moments of inertia, a fixed particle, a wall with its ends."""
 
 import math
 from dataclasses import replace

@@ -1,5 +1,4 @@
-"""A wall that moves between two gases: contacts of two balls that are computed otherwise, what is conserved,
-the same bits throughout, the exact distribution of its place."""
+"""A wall that moves between two gases: contacts computed otherwise, exact means and distributions."""
 
 import math
 from dataclasses import replace

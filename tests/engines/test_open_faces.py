@@ -53,8 +53,7 @@ def blocks(simulation, number, duration, samples):
 
 
 def agrees(values, expected, least):
-    """Whether the mean of blocks (K,) is `expected` within three standard errors, which are a part `least`
-    of it at most."""
+    """Whether the mean of blocks (K,) is `expected` within 3 errors, each at most a part `least` of it."""
     error = np.std(values, ddof=1) / math.sqrt(len(values))
     assert error < least * abs(expected)
     return abs(np.mean(values) - expected) < 3.0 * error
@@ -116,8 +115,7 @@ def test_as_many_enter_as_kinetic_theory_has_it(engine):
 @pytest.mark.thorough
 @in_both
 def test_flow_between_two_reservoirs_without_collisions(engine):
-    """What enters at one end leaves at the other: (z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of
-    particles, and 2 k_B T of energy with each."""
+    """(z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of particles, and 2 k_B T of energy with each."""
     dense, thin = (2.0, 1.0), (0.5, 4.0)
     faces = {"x_low": reservoir(*dense), "x_high": reservoir(*thin)}
     simulation = gp.Simulation(slit(faces), engine, seed=4)

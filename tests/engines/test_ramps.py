@@ -52,8 +52,7 @@ def from_walls(x, y, angles=720):
 @pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_walls_of_a_closed_vessel_are_hit_equally_often(engine):
-    """What leaves a wall by the cosine law and what comes to it balance with one rate of hits per length
-    everywhere, whatever the temperatures (Knudsen 1909)."""
+    """By the cosine law there is one rate of hits per length, whatever the temperatures (Knudsen 1909)."""
     rates = blocks(engine)[0] / np.array([WIDTH, WIDTH, LENGTH, LENGTH])
     error = rates.std(axis=0, ddof=1) / math.sqrt(BLOCKS)
     mean = np.average(rates.mean(axis=0), weights=[WIDTH, WIDTH, LENGTH, LENGTH])

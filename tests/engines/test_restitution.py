@@ -164,8 +164,7 @@ def three_on_a_line(normal, middle=0.0):
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 @pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
-    """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids
-    A 4, 496 (1992))."""
+    """At e < 7 - 4 sqrt 3 = 0.0718 three meet infinitely often (McNamara & Young, Phys. Fluids A 4, 496)."""
     for search in ("boxes", "pairs"):
         sim = gp.Simulation(three_on_a_line(normal, middle), gp.EventDriven(search))
         with pytest.raises(gp.SimulationError, match="collapse"):

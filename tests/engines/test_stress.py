@@ -100,8 +100,7 @@ def test_a_gas_that_moves_as_a_whole_has_the_fluxes_of_one_at_rest(name):
 @pytest.mark.interpreted
 @pytest.mark.parametrize("engine", ["event", "enskog"])
 def test_the_trace_is_that_of_energy_and_virial(engine):
-    """Of smooth elastic particles: twice the energy about the centre of mass times the time, and the
-    virial."""
+    """Of smooth elastic particles: twice the energy about the centre of mass by the time, and the virial."""
     sim = gp.Simulation(SCENES["mixture"], ENGINES[engine], seed=2, stress=True)
     sim.advance(duration=1.0)
     sim.reset_tally()

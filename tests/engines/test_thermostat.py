@@ -65,8 +65,7 @@ def test_what_has_no_meaning_is_refused():
 @pytest.mark.thorough
 @given(st.integers(1, 4000), st.integers(0, 2**32))
 def test_kick_n_comes_at_n_intervals(thousandths, seed):
-    """Not at the sum of n intervals, whose rounding lets a state at n intervals be before the kick, or after
-    it."""
+    """Not at the sum of n intervals, whose rounding lets a state at n intervals be before the kick."""
     interval = thousandths / 1000.0
     scene = driven(3, interval)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=seed)

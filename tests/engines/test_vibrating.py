@@ -67,9 +67,8 @@ def bounces(sim, count):
 @pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
 @pytest.mark.parametrize("law", [None, gp.Restitution(0.8)], ids=["elastic", "lossy"])
 def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
-    """Each bounce from the one before: when it comes, how fast, and how fast the ball leaves. The second
-    lot of bounces is many epochs of the clocks later. A bounce within the duration of a contact, 0.01 in
-    these units, is elastic."""
+    """Each bounce from the one before; the second lot of bounces is many epochs of the clocks later. A bounce
+    within the duration of a contact, 0.01 in these units, is elastic."""
     sim = thrown(ball({"y_low": face}, law=law, side=1e4))
     for start in (0.0, 2000.0):
         sim.advance(until=start)

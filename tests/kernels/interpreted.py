@@ -97,8 +97,7 @@ def step_scenes():
 
 
 def dsmc_scenes():
-    """Scenes of the DSMC engine with its settings, by name. Particles start on lattices, which need no random
-    insertion."""
+    """Scenes of the DSMC engine with its settings, by name. Particles start on lattices: none is inserted."""
     kind = gp.Species(40, 0.05, temperature=1.0, arrangement="lattice")
     two = [kind, replace(kind, count=20, radius=0.08, mass=3.0)]
     flat, cube = gp.Container((6.0, 5.0), ("periodic", "wall")), gp.Container((3.0,) * 3, "periodic")
@@ -125,8 +124,7 @@ def dsmc_scenes():
 
 
 def runs():
-    """Name of a run -> its scene, engines whose bits are the same, and its length; only the first is
-    compiled too."""
+    """Name of a run -> its scene, engines of the same bits, only the first compiled too, and its length."""
     found = {}
     for name, scene in event_scenes().items():
         fine = gp.EventDriven(boxes_per_side=FINE.get(name, 2))

@@ -36,8 +36,7 @@ SIZE = 0.01
 
 
 def balance(sim, start):
-    """By how much kinetic and potential energy, and what was dissipated and given, do not balance, over all
-    that was exchanged."""
+    """By how much energy, losses and gains do not balance, over all that was exchanged."""
     state, tally = sim.state, sim.tally
     left = state.energy - start + tally.dissipated_energy - tally.thermostat_energy + tally.wall_energy.sum()
     parts = (start, state.kinetic_energy, tally.dissipated_energy, tally.thermostat_energy)

@@ -1,7 +1,4 @@
-"""Faces with a kind, rough particles and vibrations in time steps: the event-driven engine's own physics.
-
-Nearly all scenes are of rough discs among faces with a kind, so that few kernels are compiled.
-"""
+"""Faces with a kind, rough particles and vibrations in time steps: the event-driven engine's own physics."""
 
 import math
 from dataclasses import replace
@@ -44,8 +41,7 @@ def rough_gas(boundary="wall", faces=None, count=120):
     ],
 )
 def test_few_particles_follow_the_event_driven_engine(parts):
-    """Wherever in a step they meet walls, edges and one another: the contacts are exact, and the same random
-    numbers belong to the same hits."""
+    """The contacts are exact wherever in a step, and the same random numbers belong to the same hits."""
     scene = gp.Scene(gp.Container((10.0, 10.0)), particles=THREE, **{"restitution": ROUGH} | parts)
     exact = gp.Simulation(scene, gp.EventDriven(), seed=3)
     exact.advance(duration=15.0)
