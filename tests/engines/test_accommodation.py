@@ -1,4 +1,4 @@
-"""Thermal faces that mirror a part of the particles (Maxwell's model): fractions, fluxes, refusals."""
+"""Thermal faces that mirror a part of the particles (Maxwell's model) or slide: fractions and fluxes."""
 
 import math
 
@@ -49,20 +49,6 @@ def test_heat_of_free_flight(engine, count, drift):
     assert found.theory[1] == pytest.approx(2.0 * 3.0 * per_hit / 3.0, rel=0.03)
     assert found.theory[0] == -found.theory[1] and "free flight" in found.attrs["source"]
     assert (found.error < 0.08 * found.theory[1]).all() and (off(found) < 3.0).all()
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize(("engine", "count"), [("event", 200), ("dsmc", 1000)])
-def test_stress_and_heat_of_sliding_plates_in_free_flight(engine, count):
-    """A third of n U sqrt(T / 2 pi), and half its work warms each plate."""
-    simulation = made(plates(count, slide=2.0), 1500.0, engine)
-    shear, heat = A.wall_shear(simulation), A.heat_flux(simulation)
-    stress = count / (GAP * SIDE**2) * 2.0 / math.sqrt(2.0 * math.pi) / 3.0
-    assert shear.theory.sel(component="y").values == pytest.approx([stress, -stress], rel=1e-3)
-    assert heat.theory.values == pytest.approx([stress, stress], rel=1e-3)
-    assert (off(shear) < 3.0).all() and (off(heat) < 3.0).all()
-    assert (shear.error.sel(component="y") < 0.08 * stress).all()
-    assert "theory" not in A.velocity_profile(simulation, "x")  # it is not the mean of both plates
 
 
 @pytest.mark.thorough
@@ -119,7 +105,6 @@ def test_theory_of_a_fluid_is_for_full_accommodation():
 def test_full_accommodation_is_no_feature():
     """1 is the same as none: to kernels, to files and to comparisons."""
     assert gp.Thermal(1.0, accommodation=1.0) == gp.Thermal(1.0)
-    assert plates(1, fractions=(1.0, 1.0)).summary.count("accommodation") == 0
     assert "accommodation" not in plates(1, fractions=(1.0, 1.0)).to_dict()["faces"]["x_low"]
 
 
@@ -129,3 +114,34 @@ def test_what_is_refused(value):
     face = {"kind": "thermal", "temperature": 1.0, "accommodation": value}
     with pytest.raises(gp.SceneError, match=r"faces.x_low.accommodation = .*: must be above 0 and at most 1"):
         gp.Scene.from_dict({"container": {"lengths": [9.0, 9.0]}, "faces": {"x_low": face}})
+
+
+WALLED = gp.Container((5.0, 10.0, 10.0), ("wall", "periodic", "periodic"))
+
+
+@pytest.mark.interpreted
+def test_a_velocity_of_zero_changes_nothing():
+    gas, states = gp.Species(400, 0.2, temperature=1.0), []
+    for face in (gp.Thermal(1.0), gp.Thermal(1.0, velocity=(0.0, -0.0, 0.0))):
+        scene = gp.Scene(WALLED, [gas], faces=dict.fromkeys(("x_low", "x_high"), face))
+        sim = gp.Simulation(scene, ENGINES["dsmc"], seed=2)
+        sim.advance(duration=1.0)
+        assert sim.tally.wall_shear is None
+        states.append(sim.state)
+    assert (states[0].velocities == states[1].velocities).all()
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize(
+    ("velocity", "rule"),
+    [((1.0, 0.0, 0.0), "no component across"), ((0.0, 1.0), "3 finite numbers"), ("fast", "finite numbers")],
+)
+def test_a_velocity_lies_along_the_face(velocity, rule):
+    with pytest.raises(gp.SceneError, match=f"velocity = .*{rule}"):
+        gp.Scene(WALLED, faces={"x_low": gp.Thermal(1.0, velocity=velocity)})
+
+
+@pytest.mark.interpreted
+def test_a_face_that_keeps_tangential_velocities_does_not_slide():
+    with pytest.raises(gp.SceneError, match='velocity = .*components "all"'):
+        gp.Thermal(1.0, "normal", (0.0, 1.0, 0.0))

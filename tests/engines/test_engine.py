@@ -83,12 +83,9 @@ def scene_with(parts):
 
 
 def test_a_new_engine_appears_in_the_command_line_the_schema_and_the_reference():
-    code = SKELETON + KNOWN
     path = os.pathsep.join(filter(None, [TOOLS, os.environ.get("PYTHONPATH")]))
-    environment = os.environ | {"PYTHONPATH": path}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment
-    )
+    command, environment = [sys.executable, "-c", SKELETON + KNOWN], os.environ | {"PYTHONPATH": path}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
     assert done.returncode == 0, done.stderr
     assert "or skeleton" in done.stdout and "--stride" in done.stdout
 

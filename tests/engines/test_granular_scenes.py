@@ -15,7 +15,7 @@ EVENTS = 200  # contacts of each particle
 ROUNDING = 1e-9
 
 
-def granular_scene(rng, dimension=2, tangential=(-1.0, -1.0, -0.5, 0.0, 0.5, 0.9, 1.0)):
+def granular_scene(rng, dimension=2):
     """A mixture of two masses that falls, in any direction or on the floor, among one to three interior
     walls, which may touch each other and the faces."""
     lengths = rng.uniform(8.0, 14.0, dimension) if dimension == 2 else rng.uniform(4.0, 7.0, dimension)
@@ -28,22 +28,16 @@ def granular_scene(rng, dimension=2, tangential=(-1.0, -1.0, -0.5, 0.0, 0.5, 0.9
     few = int(rng.integers(1, 8))
     species = [
         gp.Species(int(rng.integers(8, 40)), radius, temperature=temperature),
-        gp.Species(
-            few, radius * rng.uniform(0.3, 1.8), mass=float(rng.choice([0.1, 3.0, 10.0])), temperature=1.0
-        ),
     ]
+    size = radius * rng.uniform(0.3, 1.8)
+    species.append(gp.Species(few, size, mass=float(rng.choice([0.1, 3.0, 10.0])), temperature=1.0))
     if rng.random() < 0.3:
         species.append(gp.Species(int(rng.integers(1, 4)), radius, fixed=True))
-    law = gp.Restitution(
-        float(rng.choice([0.0, 0.1, 0.5, 0.8, 0.95, 0.99, rng.random()])), float(rng.choice(tangential))
-    )
-    return gp.Scene(
-        gp.Container(tuple(lengths)),
-        species,
-        gravity=tuple(rng.choice([0.1, 1.0, 5.0]) * gravity),
-        restitution=law,
-        walls=[wall_of(rng, lengths) for _ in range(int(rng.integers(1, 4)))],
-    )
+    normal = float(rng.choice([0.0, 0.1, 0.5, 0.8, 0.95, 0.99, rng.random()]))
+    law = gp.Restitution(normal, float(rng.choice([-1.0, -1.0, -0.5, 0.0, 0.5, 0.9, 1.0])))
+    rest = {"gravity": tuple(rng.choice([0.1, 1.0, 5.0]) * gravity), "restitution": law}
+    walls = [wall_of(rng, lengths) for _ in range(int(rng.integers(1, 4)))]
+    return gp.Scene(gp.Container(tuple(lengths)), species, walls=walls, **rest)
 
 
 def wall_of(rng, lengths):
@@ -76,7 +70,11 @@ def faults(scene, seed):
         energy, before = sim.state.energy, energy
         if energy > before + ROUNDING * scale:
             found.append(f"the energy rises by {energy - before:g} before {time:g}")
-    while 2 * sim.tally.collisions < EVENTS * scene.count and sim.time < 10.0 * TIME and any_moves(sim):
+    while (
+        2 * sim.tally.collisions < EVENTS * scene.count
+        and sim.time < 10.0 * TIME
+        and np.any(sim.state.velocities)
+    ):
         sim.advance(duration=TIME)
     sim.check_invariants()
     if (gap := closest(scene, sim.state)) < -ROUNDING:
@@ -87,17 +85,13 @@ def faults(scene, seed):
     return found
 
 
-def any_moves(sim):
-    return bool(np.any(sim.state.velocities))
-
-
-def all_faults(seeds, **options):
+def all_faults(seeds, dimension=2):
     """Seed and faults of each random scene that has some; scenes that cannot be are left out."""
     found, runs = {}, 0
     for seed in seeds:
         rng = np.random.default_rng(seed)
         try:
-            scene = granular_scene(rng, **options)
+            scene = granular_scene(rng, dimension)
             gp.Simulation(scene, gp.EventDriven(), seed)
         except gp.SceneError:
             continue
@@ -110,11 +104,6 @@ def all_faults(seeds, **options):
             found[seed] = wrong
     assert runs > 0.5 * len(seeds)
     return found
-
-
-def test_random_granular_scenes_run_without_an_error():
-    """Rough ones, which all have the same compiled kernels."""
-    assert all_faults(range(3), tangential=(-0.5, 0.0, 0.5, 0.9)) == {}
 
 
 @pytest.mark.parametrize("seed", [146, 275])
@@ -134,12 +123,9 @@ def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
     """Six discs at rest on a floor, which gravity presses slightly against a wall, and one that bounces off
     the row. They had 3e5 collisions before the time 0.125, ever slower ones in ever smaller gaps."""
     row = [gp.Particle((0.5 + n * (1.0 + 1e-13), 0.5), (0.0, 0.0), 0.5) for n in range(6)]
-    scene = gp.Scene(
-        gp.Container((12.0, 5.0)),
-        particles=[*row, gp.Particle((8.0, 0.5), (-1.0, 0.0), 0.5)],
-        gravity=(-0.1, -5.0),
-        restitution=gp.Restitution(0.95, contact_duration=0.0036),
-    )
+    row.append(gp.Particle((8.0, 0.5), (-1.0, 0.0), 0.5))
+    law = gp.Restitution(0.95, contact_duration=0.0036)
+    scene = gp.Scene(gp.Container((12.0, 5.0)), particles=row, gravity=(-0.1, -5.0), restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     energy = sim.state.energy
     sim.advance(until=10.0, max_events=300_000)
@@ -151,13 +137,9 @@ def test_a_row_that_is_pressed_along_a_floor_does_not_meet_ever_more_often():
 def test_a_stack_stays_at_rest_on_an_interior_wall():
     """Ten discs, each exactly on the one below."""
     particles = [gp.Particle((5.0, math.pi + 0.5 + n), (0.0, 0.0), 0.5) for n in range(10)]
-    scene = gp.Scene(
-        gp.Container((10.0, 16.0)),
-        particles=particles,
-        gravity=(0.0, -1.0),
-        restitution=gp.Restitution(0.8, 0.5, contact_duration=0.1),
-        walls=[gp.Wall((2.0, math.pi), (8.0, math.pi))],
-    )
+    rest = {"gravity": (0.0, -1.0), "restitution": gp.Restitution(0.8, 0.5, contact_duration=0.1)}
+    walls = [gp.Wall((2.0, math.pi), (8.0, math.pi))]
+    scene = gp.Scene(gp.Container((10.0, 16.0)), particles=particles, walls=walls, **rest)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(duration=TIME)
     assert sim.state.positions == pytest.approx(sim.initial_state.positions, abs=1e-5)

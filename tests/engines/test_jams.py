@@ -12,8 +12,7 @@ COUNT = 4  # of discs in a row
 
 
 def row_and_disc(mass, width=float(COUNT)):
-    """A row that fills the width of the container with a little energy, and a disc that falls on its second
-    one at a time of 3."""
+    """A row that fills the container's width, with a little energy; a disc hits its second one at 3."""
     row = [gp.Particle((0.5 + n, 0.5 + 1e-3 * (n % 2)), (0.01 * (-1) ** n, 0.0), 0.5) for n in range(COUNT)]
     disc = gp.Particle((1.5, 1.5 + 4.5), (0.0, 0.0), 0.5, mass)
     container = gp.Container((width, 12.0))
@@ -85,13 +84,8 @@ def test_a_hopper_whose_discs_jam_comes_to_rest():
     """Five discs of it stand exactly between the floor and the end of a wall. Without jams they had 9e6
     contacts in ten units of time at 60, and ever more."""
     walls = [gp.Wall((0.0, 8.0), (2.5, 5.0)), gp.Wall((7.0, 8.0), (4.5, 5.0))]
-    scene = gp.Scene(
-        gp.Container((7.0, 40.0)),
-        [gp.Species(60, 0.5, temperature=1.0)],
-        gravity=(0.0, -1.0),
-        restitution=gp.Restitution(0.8, 0.3),
-        walls=walls,
-    )
+    rest = {"gravity": (0.0, -1.0), "restitution": gp.Restitution(0.8, 0.3), "walls": walls}
+    scene = gp.Scene(gp.Container((7.0, 40.0)), [gp.Species(60, 0.5, temperature=1.0)], **rest)
     sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
     energy = sim.state.energy
     sim.advance(until=100.0, max_events=6_000_000)

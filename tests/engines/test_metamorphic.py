@@ -1,8 +1,5 @@
-"""What must not matter: units, mirrors, names of axes and particles; and how long a run remembers its start.
-
-One scene of two dimensions with all that a contact may have: gravity, restitution, spins, unlike masses
-and moments of inertia, a fixed particle, and an interior wall with its ends.
-"""
+"""What must not matter, mirrors, names of axes and particles, of a scene with all that a contact may have:
+gravity, restitution, spins, unlike masses and moments of inertia, a fixed particle, a wall with its ends."""
 
 import math
 from dataclasses import replace
@@ -32,19 +29,13 @@ def everything(state, spins, turn=lambda v: v, place=None, hand=1.0):
     """The scene with its vectors turned by `turn`, its places by `place`; hand: -1 if mirrored."""
     place = place or turn
     particles = []
-    for n in range(state.count):
-        fixed = bool(np.isinf(state.masses[n]))
-        still = {"fixed": True} if fixed else {"spin": float(hand * spins[n])}
-        m = 1.0 if fixed else state.masses[n]
+    for x, v, spin, radius, m in zip(
+        state.positions, state.velocities, spins, state.radii, state.masses, strict=True
+    ):
+        own = {"fixed": True} if np.isinf(m) else {"spin": float(hand * spin), "mass": m}
+        inertia = 0.3 * own.get("mass", 1.0) * radius**2
         particles.append(
-            gp.Particle(
-                tuple(place(state.positions[n])),
-                tuple(turn(state.velocities[n])),
-                state.radii[n],
-                m,
-                moment_of_inertia=0.3 * m * state.radii[n] ** 2,
-                **still,
-            )
+            gp.Particle(tuple(place(x)), tuple(turn(v)), radius, moment_of_inertia=inertia, **own)
         )
     scene = gp.Scene(
         gp.Container(tuple(np.abs(turn(LENGTHS)))),
@@ -99,12 +90,9 @@ def echo(seed, per_particle, count=100):
     there = gp.Simulation(scene, gp.EventDriven(), seed=seed)
     while 2 * there.tally.collisions < per_particle * count:
         there.advance(duration=0.1)
-    turned = there.state
-    particles = [
-        gp.Particle(tuple(r), tuple(-v), 0.5)
-        for r, v in zip(turned.positions, turned.velocities, strict=True)
-    ]
-    back = gp.Simulation(gp.Scene(scene.container, particles=particles), gp.EventDriven())
+    turned = there.state.copy()
+    turned.velocities *= -1.0
+    back = gp.Simulation(scene, gp.EventDriven(), initial=turned)
     back.advance(duration=there.time)
     return math.sqrt(((back.state.positions - there.initial_state.positions) ** 2).sum(axis=1).mean())
 

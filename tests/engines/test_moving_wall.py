@@ -1,5 +1,4 @@
-"""A wall that moves between two gases: contacts of two balls that are computed otherwise, what is conserved,
-the same bits throughout, the exact distribution of its place."""
+"""A wall that moves between two gases: contacts computed otherwise, exact means and distributions."""
 
 import math
 from dataclasses import replace
@@ -68,13 +67,12 @@ def test_balls_and_a_wall_meet_as_computed_without_rounding(mass, axis):
     """A heavy and a light wall; balls of two masses, whose radius is within the ends of the container."""
     radius, length = 0.5, 12.0
     places, velocities, masses = (2.0, 9.5), (1.25, -0.75), (1.0, 2.0)
-    particles = []
-    for place, velocity, own in zip(places, velocities, masses, strict=True):
-        where, speed = [2.0, 2.0], [0.0, 0.0]
-        where[axis], speed[axis] = place, velocity
-        particles.append(gp.Particle(tuple(where), tuple(speed), radius, mass=own))
-    lengths, boundary = [4.0, 4.0], ["periodic", "periodic"]
-    lengths[axis], boundary[axis] = length, "wall"
+    along = [1, -1][axis]  # (of the wall, along it), or the other way round
+    particles = [
+        gp.Particle((place, 2.0)[::along], (velocity, 0.0)[::along], radius, mass=own)
+        for place, velocity, own in zip(places, velocities, masses, strict=True)
+    ]
+    lengths, boundary = (length, 4.0)[::along], ("wall", "periodic")[::along]
     wall = across(5.5, 4.0, mass, axis)
     scene = gp.Scene(gp.Container(lengths, boundary), particles=particles, walls=[wall])
     sim = gp.Simulation(scene, EVENT)
@@ -84,10 +82,7 @@ def test_balls_and_a_wall_meet_as_computed_without_rounding(mass, axis):
     balls = sim.events["particles"][hits, 0]
     centres = sim.events["positions"][hits, 0, axis]
     # points between ends that are a diameter nearer, with the wall a radius nearer to each
-    points = [
-        (places[0] - radius, velocities[0], masses[0]),
-        (places[1] - 3 * radius, velocities[1], masses[1]),
-    ]
+    points = list(zip((places[0] - radius, places[1] - 3 * radius), velocities, masses, strict=True))
     known = meetings((5.5 - 2 * radius, 0.0, mass), points, length - 4 * radius, 40)
     assert len(balls) >= 40
     for n, (time, ball, place) in enumerate(known):
@@ -214,8 +209,6 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
     relaxation = mass / (4.0 * linear * np.sqrt(temperatures / (2.0 * math.pi))).sum()
     drift = math.sqrt(2.0 * math.pi) / (4.0 * mass) * (1.0 - 2.0)
     error, spread = np.std(moved) / math.sqrt(runs), np.std(squares) / math.sqrt(runs)
-    print(f"moved {np.mean(moved):.3f}({error:.3f}), {drift * (time - 1.5 * relaxation):.3f}")
-    print(f"<V^2> {np.mean(squares):.4f}({spread:.4f}), {2.0 / mass:.4f}")
     assert error < 0.1 * abs(drift) * time
     assert abs(np.mean(moved) - drift * (time - 1.5 * relaxation)) < 3.0 * error
     assert abs(np.mean(squares) - 2.0 / mass) < 3.0 * spread
@@ -224,13 +217,10 @@ def test_a_wall_drifts_to_the_hot_gas_although_the_pressures_are_equal():
 @pytest.mark.interpreted
 def test_what_a_wall_that_moves_does_not_go_with_is_refused():
     scene = divided()
-    with pytest.raises(gp.SceneError, match='walls.*needs the "event" engine'):
-        gp.Simulation(scene, gp.TimeStepped(0.01))
     (wall,) = scene.walls
     for walls, rule in (
         ([wall, gp.Wall((1.0, 1.0), (2.0, 1.0))], "must be the only interior wall"),
         ([replace(wall, temperature=1.0)], "excludes a temperature"),
-        ([gp.Wall((8.0, 0.0), (8.0, 5.0), mass=1.0)], "must reach across the whole container"),
         ([gp.Wall((8.0, 0.0), (8.5, 6.0), mass=1.0)], "must reach across the whole container"),
         ([across(3.0, 16.0, 1.0, axis=1)], "needs walls across y"),
     ):
@@ -238,7 +228,6 @@ def test_what_a_wall_that_moves_does_not_go_with_is_refused():
             replace(scene, walls=walls)
     for key, value in (
         ("gravity", (-1.0, 0.0)),
-        ("restitution", gp.Restitution(0.9)),
         ("restitution", gp.Restitution(1.0, 0.5)),
         ("thermostat", gp.Thermostat(1.0, 0.1)),
         ("faces", {"x_low": gp.Vibrating(0.1, 1.0)}),
@@ -248,9 +237,6 @@ def test_what_a_wall_that_moves_does_not_go_with_is_refused():
     ):
         with pytest.raises(gp.SceneError, match="excludes (an interior wall that|piston faces)"):
             replace(scene, **{key: value})
-    for mass in (0.0, -1.0, math.nan):
-        with pytest.raises(gp.SceneError, match="mass"):
-            replace(wall, mass=mass)
     with pytest.raises(gp.SceneError, match=r"walls\[0\].mass = 20.0: .* needs particles on both sides"):
         gp.Simulation(divided(right=(0, 1.0)), EVENT)
 
@@ -269,14 +255,3 @@ def test_a_given_state_must_have_the_same_piston():
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([nearest + 0.2, 0.0])))
     with pytest.raises(gp.SceneError, match="must be a position from 0 to 16 and a velocity"):
         gp.Simulation(scene, EVENT, initial=replace(state, piston=np.array([17.0, 0.0])))
-
-
-@pytest.mark.thorough
-def test_the_gases_may_be_between_thermal_faces():
-    """Heat flows through the wall only as it moves: from the hot face to the cold one."""
-    faces = {"x_low": gp.Thermal(4.0), "x_high": gp.Thermal(1.0)}
-    sim = gp.Simulation(replace(divided(mass=1.0), faces=faces), EVENT, seed=1)
-    sim.advance(until=600.0)
-    sim.check_invariants()
-    given = sim.tally.wall_energy
-    assert given[0] < -50.0 and given[1] > 50.0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from referee import WORK, check_same
 from scenes import opened
 
 import gaspart as gp
@@ -18,8 +19,6 @@ LENGTHS = (8.0, 4.0, 4.0)
 POINT = 1e-3
 """A radius with which hardly any particles collide."""
 PERIODIC = ("wall", "periodic", "periodic")
-
-
 ENGINES = {
     "event": gp.EventDriven(),
     "dsmc": gp.DSMC(time_step=0.5, cells_per_side=(2, 1, 1), adapt="nothing"),
@@ -54,8 +53,7 @@ def blocks(simulation, number, duration, samples):
 
 
 def agrees(values, expected, least):
-    """Whether the mean of blocks (K,) is `expected` within three standard errors, which are a part `least`
-    of it at most."""
+    """Whether the mean of blocks (K,) is `expected` within 3 errors, each at most a part `least` of it."""
     error = np.std(values, ddof=1) / math.sqrt(len(values))
     assert error < least * abs(expected)
     return abs(np.mean(values) - expected) < 3.0 * error
@@ -77,23 +75,6 @@ def test_effusion_into_a_vacuum(engine):
         assert simulation.state.count == pytest.approx(count * stays, abs=3.0 * spread)
         assert simulation.state.count == count - simulation.tally.wall_hits[0]
     simulation.check_invariants()
-
-
-@pytest.mark.thorough
-@in_both
-def test_a_stream_from_an_opening_is_hotter_than_the_gas(engine):
-    """2 k_B T per particle, of variance 2 (k_B T)^2, at first, and the momentum (pi m k_B T / 2)^(1/2)."""
-    scene = slit({"x_low": gp.Open()}, 8000, temperature=3.0)
-    simulation = gp.Simulation(scene, replace(engine, time_step=0.25) if engine.quantum else engine, seed=2)
-    simulation.advance(duration=0.25)
-    left = simulation.tally.wall_hits[0]
-    energy, momentum = simulation.tally.wall_energy[0] / left, simulation.tally.wall_impulse[0] / left
-    assert left > 150
-    # those that come from within half the slit, so that slow ones are a little too rare: less than the error
-    assert energy == pytest.approx(6.0, abs=3.0 * 3.0 * math.sqrt(2.0 / left))
-    assert momentum == pytest.approx(
-        math.sqrt(1.5 * math.pi), abs=3.0 * math.sqrt(6.0 - 1.5 * math.pi) / math.sqrt(left)
-    )
 
 
 @cache
@@ -134,8 +115,7 @@ def test_as_many_enter_as_kinetic_theory_has_it(engine):
 @pytest.mark.thorough
 @in_both
 def test_flow_between_two_reservoirs_without_collisions(engine):
-    """What enters at one end leaves at the other: (z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of
-    particles, and 2 k_B T of energy with each."""
+    """(z_1 T_1^(1/2) - z_2 T_2^(1/2)) / (2 pi m)^(1/2) of particles, and 2 k_B T of energy with each."""
     dense, thin = (2.0, 1.0), (0.5, 4.0)
     faces = {"x_low": reservoir(*dense), "x_high": reservoir(*thin)}
     simulation = gp.Simulation(slit(faces), engine, seed=4)
@@ -178,12 +158,9 @@ def test_no_net_flow_between_reservoirs_that_send_equally_many(wall, engine):
     assert np.mean(heat) > 10.0 * np.std(heat, ddof=1) / math.sqrt(len(heat))
 
 
-FEW = gp.Scene(
-    gp.Container((1.5, 0.5), "wall"),
-    [gp.Species(1, 0.5, temperature=1.0)],
-    faces={"x_low": gp.Open(2.0 * math.pi / 4.0, 1.0), "y_high": gp.Open(2.0 * math.pi / 4.0, 1.0)},
-    centres_to_walls=True,
-)
+TWO = dict.fromkeys(("x_low", "y_high"), gp.Open(2.0 * math.pi / 4.0, 1.0))
+ONE = [gp.Species(1, 0.5, temperature=1.0)]
+FEW = gp.Scene(gp.Container((1.5, 0.5)), ONE, faces=TWO, centres_to_walls=True)
 """Room for the centres of two discs at most, and two reservoirs of z = 2."""
 
 
@@ -233,43 +210,11 @@ def test_a_moderately_dense_gas_is_that_of_the_reservoir():
     assert abs(density - float(theory.activity(eta, 3)) / (math.pi / 6.0)) > 0.2 * density
 
 
-MIXED = {
-    "x_low": gp.Open(0.3, 2.0),
-    "x_high": gp.Open(0.1, 1.0),
-    "y_low": gp.Thermal(3.0),
-    "y_high": gp.Open(),
-}
-DISCS = gp.Scene(
-    gp.Container((6.0, 6.0)),
-    [gp.Species(12, 0.5, mass=2.0, temperature=1.0)],
-    faces=MIXED,
-    centres_to_walls=True,
-)
+MIXED = {"x_low": gp.Open(0.3, 2.0), "x_high": gp.Open(0.1, 1.0)}
+MIXED |= {"y_low": gp.Thermal(3.0), "y_high": gp.Open()}
+DOZEN = [gp.Species(12, 0.5, mass=2.0, temperature=1.0)]
+DISCS = gp.Scene(gp.Container((6.0, 6.0)), DOZEN, faces=MIXED, centres_to_walls=True)
 """Discs between two reservoirs, a vacuum and a thermal face."""
-
-
-@pytest.mark.interpreted
-def test_particles_and_energy_are_conserved_exactly():
-    simulation = gp.Simulation(DISCS, seed=7)
-    begun = simulation.state.energy
-    for _ in range(20):
-        simulation.advance(duration=5.0)
-        state, tally = simulation.state, simulation.tally
-        opened = [0, 1, 3]
-        assert state.count == 12 + tally.entries.sum() - tally.wall_hits[opened].sum()
-        assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, rel=1e-12)
-        assert tally.entries[2] == tally.entries[3] == 0 < tally.entries[1]
-    assert tally.collisions > 50
-
-
-def same(one, other):
-    """Whether two simulations have the same bits."""
-    mine, its = ((it.state, it.tally, it.checkpoint()["entry_next"]) for it in (one, other))
-    fields = ("numbers", "positions", "velocities"), ("entries", "wall_hits", "wall_energy", "wall_impulse")
-    alike = [np.array_equal(mine[2], its[2])]
-    for n, names in enumerate(fields):
-        alike += [np.array_equal(getattr(mine[n], name), getattr(its[n], name)) for name in names]
-    return all(alike)
 
 
 @pytest.mark.thorough
@@ -284,9 +229,7 @@ def test_random_open_scenes_keep_their_books_and_bits(scene, seed):
     other.restore(parts.checkpoint())
     other.advance(max_events=250, until=50.0)
     state, tally = whole.state, whole.tally
-    assert np.array_equal(state.positions, other.state.positions)
-    assert np.array_equal(state.numbers, other.state.numbers)
-    assert np.array_equal(tally.entries, other.tally.entries)
+    check_same(whole, other, WORK)
     assert state.count == scene.count + tally.entries.sum() - tally.wall_hits[opened].sum()
     exchanged = np.abs(tally.wall_energy).sum() + begun
     assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
@@ -330,13 +273,9 @@ def test_a_full_container_ends_the_run():
 @pytest.mark.thorough
 def test_attempts_to_enter_are_events():
     """Of a reservoir that sends 7000 times as many particles as there is room for, nearly all are refused."""
-    faces = {"x_low": gp.Open(2000.0, 1.0), "x_high": gp.Open()}
-    scene = gp.Scene(
-        gp.Container((6.0, 6.0), ("wall", "periodic")),
-        [gp.Species(12, 0.5, temperature=1.0)],
-        faces=faces,
-        centres_to_walls=True,
-    )
+    faces, species = {"x_low": gp.Open(2000.0, 1.0), "x_high": gp.Open()}, replace(DOZEN[0], mass=1.0)
+    container = gp.Container((6.0, 6.0), ("wall", "periodic"))
+    scene = gp.Scene(container, [species], faces=faces, centres_to_walls=True)
     simulation, parts = gp.Simulation(scene, seed=1), gp.Simulation(scene, gp.EventDriven("pairs"), seed=1)
     simulation.advance(max_events=20_000)
     attempts = simulation.time * 2000.0 / (0.25 * math.pi) * 6.0 / math.sqrt(2.0 * math.pi)
@@ -346,7 +285,7 @@ def test_attempts_to_enter_are_events():
     assert 5 < tally.entries[0] < 0.1 * attempts
     for number in (1, 2, 6997, 13_000):
         parts.advance(max_events=number)
-    assert same(simulation, parts)
+    check_same(simulation, parts, WORK)
     simulation.check_invariants()
 
 
@@ -366,13 +305,6 @@ def test_numbers_beyond_the_first_block_are_found():
 
 
 @pytest.mark.interpreted
-def test_files():
-    scene = gp.Scene.from_dict(DISCS.to_dict())
-    assert scene == DISCS and scene.faces["y_high"] == gp.Open()
-    assert scene.to_dict()["faces"]["x_low"] == {"kind": "open", "activity": 0.3, "temperature": 2.0}
-
-
-@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("changes", "rule"),
     [
@@ -380,13 +312,9 @@ def test_files():
         ({"gravity": (0.0, -1.0)}, "gravity.*excludes open faces.*nothing acts on the gas"),
         ({"restitution": gp.Restitution(0.9)}, "restitution.normal.*excludes open faces.*smooth and elastic"),
         ({"faces": MIXED | {"y_low": gp.Thermal(1.0, velocity=(1.0, 0.0))}}, "a thermal one is at rest"),
-        (
-            {"faces": MIXED | {"y_high": gp.Open(1e20, 1.0)}},
-            "y_high.activity = 1e.20: must let at most",
-        ),
+        ({"faces": MIXED | {"y_high": gp.Open(1e20, 1.0)}}, "y_high.activity = 1e.20: must let at most"),
         ({"thermostat": gp.Thermostat(1.0, 0.1)}, "thermostat.*excludes open faces"),
         ({"species": [gp.Species(2, 0.5), gp.Species(1, 0.4)]}, "particles of one species"),
-        ({"species": [gp.Species(0, 0.5)]}, "particles of one species"),
         ({"species": [gp.Species(9, 0.5, polydispersity=0.1)]}, "polydispersity.*excludes open faces"),
         ({"species": [gp.Species(9, 0.5, fixed=True)]}, "fixed.*excludes open faces"),
         ({"particles": [gp.Particle((3.0, 3.0), (0.0, 0.0), 0.5)]}, "particles of one species"),
@@ -400,11 +328,9 @@ def test_scenes_that_are_refused(changes, rule):
 
 
 @pytest.mark.interpreted
-@pytest.mark.parametrize(
-    "settings", [{"activity": 0.1}, {"temperature": 1.0}, {"activity": -1.0, "temperature": 1.0}]
-)
+@pytest.mark.parametrize("settings", [{"activity": 0.1}, {"temperature": 1.0}])
 def test_reservoirs_that_are_refused(settings):
-    with pytest.raises(gp.SceneError, match="must be given together with activity|must be positive"):
+    with pytest.raises(gp.SceneError, match="must be given together with activity"):
         gp.Open(**settings)
 
 

@@ -52,8 +52,7 @@ def from_walls(x, y, angles=720):
 @pytest.mark.thorough
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_walls_of_a_closed_vessel_are_hit_equally_often(engine):
-    """What leaves a wall by the cosine law and what comes to it balance with one rate of hits per length
-    everywhere, whatever the temperatures (Knudsen 1909)."""
+    """By the cosine law there is one rate of hits per length, whatever the temperatures (Knudsen 1909)."""
     rates = blocks(engine)[0] / np.array([WIDTH, WIDTH, LENGTH, LENGTH])
     error = rates.std(axis=0, ddof=1) / math.sqrt(BLOCKS)
     mean = np.average(rates.mean(axis=0), weights=[WIDTH, WIDTH, LENGTH, LENGTH])
@@ -118,9 +117,7 @@ def test_no_theory_of_plates_is_stated_of_it():
         ("x_low", {"x_low": 1.0, "x_high": 2.0}, "must vary along the face, not across it"),
         ("x_low", {"z_low": 1.0, "z_high": 2.0}, "needs walls across z"),
         ("z_low", {"y_low": 1.0, "y_high": 2.0}, "needs walls across y"),
-        ("x_low", {"z_low": 1.0}, "must be of two opposite faces"),
         ("x_low", {"z_low": 1.0, "y_high": 2.0}, "must be of two opposite faces"),
-        ("x_low", {"z_low": 1.0, "z_high": 0.0}, "z_high = 0.0: must be positive"),
         ("x_low", [1.0, 2.0], "must be a single number"),
     ],
 )

@@ -14,21 +14,10 @@ from gaspart import theory
 
 @pytest.mark.thorough
 def test_smooth_and_elastic_is_the_plain_engine():
-    scene = gas(3, 50, 0.1)
-    ends = []
-    for restitution in (None, gp.Restitution()):
-        sim = gp.Simulation(replace(scene, restitution=restitution), gp.EventDriven(), seed=1)
-        sim.advance(duration=20.0)
-        ends.append(sim.state.positions)
-    assert np.array_equal(*ends)
-    # and the law's own code, brought in by a fixed particle out of reach, agrees with it to rounding
-    particle = gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0)
-    other, far = (
-        gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5),
-        gp.Particle((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True),
-    )
-    ends = []
-    for particles in ([particle, other], [particle, other, far]):
+    """The law's own code, brought in by a fixed particle out of reach, agrees to rounding."""
+    both = [gp.Particle((2.0, 5.0), (1.0, 0.2), 0.5, mass=2.0), gp.Particle((6.0, 5.1), (0.0, 0.0), 0.5)]
+    far, ends = gp.Particle((1.0, 1.0), (0.0, 0.0), 0.2, fixed=True), []
+    for particles in (both, [*both, far]):
         sim = gp.Simulation(gp.Scene(gp.Container((10.0, 10.0)), particles=particles), gp.EventDriven())
         sim.advance(duration=7.0)
         assert sim.tally.collisions == 1
@@ -36,9 +25,9 @@ def test_smooth_and_elastic_is_the_plain_engine():
     assert np.allclose(*ends, rtol=1e-14)
 
 
-def collided(law, one, other, side=40.0):
+def collided(law, one, other):
     """The state just after two particles, placed by hand, have met."""
-    scene = gp.Scene(gp.Container((side,) * len(one.position)), particles=[one, other], restitution=law)
+    scene = gp.Scene(gp.Container((40.0,) * len(one.position)), particles=[one, other], restitution=law)
     sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(max_events=1)
     assert sim.tally.collisions == 1
@@ -52,11 +41,7 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
     """Spencer 2022, Eqs. 22, 26 and 39, with unlike masses, radii, inertias and spins."""
     rng = np.random.default_rng(5)
     law = gp.Restitution(*law)
-    turn = (
-        [float(s) for s in rng.normal(size=2)]
-        if dimension == 2
-        else [tuple(s) for s in rng.normal(size=(2, 3))]
-    )
+    turn = rng.normal(size=2 if dimension == 2 else (2, 3)).tolist()
     one = gp.Particle((20.0,) * dimension, (1.0, 0.3, -0.2)[:dimension], 1.5, 2.0, turn[0], 0.7)
     other = gp.Particle((24.0, 20.5, 21.0)[:dimension], (-1.0, 0.1, -0.6)[:dimension], 0.6, 5.0, turn[1], 1.9)
     sim = collided(law, one, other)
@@ -97,65 +82,33 @@ def test_a_rough_contact_follows_the_closed_formulae(dimension, law):
 
 
 @pytest.mark.interpreted
-def test_equal_rough_discs_exchange_their_surface_velocities():
-    """Equal masses, all of it in the rim (I = m R^2), perfectly rough: a grazing pair swaps v and R w."""
-    one = gp.Particle((5.0, 5.0), (1.0, 0.0), 0.5, 1.0, 0.0, 0.25)
-    other = gp.Particle((8.0, 5.0), (0.0, 0.0), 0.5, 1.0, 2.0, 0.25)
-    sim = collided(gp.Restitution(1.0, 1.0), one, other)
-    # surfaces slide at R w = 1; the impulse is -2/(2 + 2) of that
-    assert sim.state.velocities == pytest.approx(np.array([[0.0, -0.5], [1.0, 0.5]]), abs=1e-14)
-    assert sim.state.spins == pytest.approx([-1.0, 1.0], abs=1e-13)
-
-
-@pytest.mark.interpreted
 @pytest.mark.parametrize("law", [(1.0, 1.0), (0.6, 0.2), (0.0, -1.0)])
 def test_a_wall_hit_follows_its_formula(law):
     """Spencer 2022, Eq. 40, at the upper y wall."""
     law, m, radius, inertia, spin = gp.Restitution(*law), 3.0, 0.5, 0.2, 1.7
     particle = gp.Particle((5.0, 5.0), (1.0, 2.0), radius, m, spin, inertia)
-    sim = gp.Simulation(
-        gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], restitution=law), gp.EventDriven()
-    )
+    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle], restitution=law)
+    sim = gp.Simulation(scene, gp.EventDriven())
     sim.advance(max_events=1)
     slide = 1.0 - radius * spin  # v + R w x n, n = y
     along = -(1 + law.tangential) / (1 / m + radius**2 / inertia) * slide
     assert sim.state.velocities[0] == pytest.approx([1.0 + along / m, -2.0 * law.normal], abs=1e-14)
     assert sim.state.spins[0] == pytest.approx(spin - radius / inertia * along, abs=1e-13)
     assert sim.tally.wall_impulse[3] == pytest.approx((1 + law.normal) * m * 2.0)
-    assert sim.state.energy + sim.tally.dissipated_energy == pytest.approx(
-        sim.initial_state.energy, rel=1e-14
-    )
+    kept = sim.state.energy + sim.tally.dissipated_energy
+    assert kept == pytest.approx(sim.initial_state.energy, rel=1e-14)
     sim.advance(duration=1.0)
     sim.check_invariants()
 
 
 @pytest.mark.interpreted
-def test_a_superball_between_floor_and_ceiling_comes_back():
-    """Garwin (Am. J. Phys. 37, 88 (1969)): a perfectly rough ball thrown under a table returns; three hits
-    of floor, table and floor nearly turn its way round, where a smooth ball would go on."""
-    way = {}
-    for tangential in (-1.0, 1.0):
-        ball = gp.Particle((50.0, 1.0, 50.0), (1.0, -2.0, 0.0), 0.5)
-        scene = gp.Scene(
-            gp.Container((100.0, 3.0, 100.0)), particles=[ball], restitution=gp.Restitution(1.0, tangential)
-        )
-        sim = gp.Simulation(scene, gp.EventDriven())
-        sim.advance(max_events=3)
-        way[tangential] = sim.state.velocities[0, 0]
-    assert way[-1.0] == 1.0
-    assert way[1.0] < -0.3
-
-
-@pytest.mark.interpreted
 def test_a_fixed_particle_is_a_wall():
     for dimension in (2, 3):
-        post = gp.Particle((5.0,) * dimension, (0.0,) * dimension, 1.0, fixed=True)
-        ball = gp.Particle(
-            (2.0,) + (5.0,) * (dimension - 1), (1.0,) + (0.0,) * (dimension - 1), 0.5, mass=7.0
-        )
-        sim = gp.Simulation(
-            gp.Scene(gp.Container((10.0,) * dimension), particles=[post, ball]), gp.EventDriven()
-        )
+        middle, still = (5.0,) * dimension, (0.0,) * dimension
+        post = gp.Particle(middle, still, 1.0, fixed=True)
+        ball = gp.Particle((2.0, *middle[1:]), (1.0, *still[1:]), 0.5, mass=7.0)
+        scene = gp.Scene(gp.Container((10.0,) * dimension), particles=[post, ball])
+        sim = gp.Simulation(scene, gp.EventDriven())
         sim.advance(duration=2.5)
         assert sim.tally.collisions == 1
         assert sim.state.positions[1, 0] == pytest.approx(2.5, rel=1e-15)
@@ -178,9 +131,8 @@ def test_a_ball_falls_on_a_fixed_one_and_bounces_back():
         assert sim.events["time"] == pytest.approx([math.sqrt(8.0 - 2.0 - height)], rel=1e-14)
         speed = 2.0 * sim.time
         n = np.array([0.3, height]) / 1.5
-        assert sim.state.velocities[1] == pytest.approx(
-            np.array([0, -speed]) + 2 * speed * n[1] * n, rel=1e-13
-        )
+        expected = np.array([0, -speed]) + 2 * speed * n[1] * n
+        assert sim.state.velocities[1] == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.interpreted
@@ -201,31 +153,33 @@ def test_a_ball_on_a_floor_comes_to_rest(normal):
     sim.check_invariants()
 
 
+def three_on_a_line(normal, middle=0.0):
+    """Discs of which the outer ones come to the middle one, which has a velocity."""
+    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
+    law = gp.Restitution(normal)
+    return gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=law)
+
+
 @pytest.mark.interpreted
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 @pytest.mark.parametrize("normal", [0.0, 0.03, 0.05, 0.06])
 def test_collapse_is_reported_with_the_state_kept(middle, normal):
-    """Three on a line with e < 7 - 4 sqrt 3 = 0.0718 meet infinitely often (McNamara & Young, Phys. Fluids
-    A 4, 496 (1992))."""
-    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, middle), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(normal))
+    """At e < 7 - 4 sqrt 3 = 0.0718 three meet infinitely often (McNamara & Young, Phys. Fluids A 4, 496)."""
     for search in ("boxes", "pairs"):
-        sim = gp.Simulation(scene, gp.EventDriven(search))
+        sim = gp.Simulation(three_on_a_line(normal, middle), gp.EventDriven(search))
         with pytest.raises(gp.SimulationError, match="collapse"):
             sim.advance(duration=10.0)
         assert 1.0 < sim.time < 3.0
         assert np.isfinite(sim.state.positions).all()
         sim.check_invariants()
-    sim = gp.Simulation(replace(scene, restitution=gp.Restitution(0.1)), gp.EventDriven())
+    sim = gp.Simulation(three_on_a_line(0.1, middle), gp.EventDriven())
     sim.advance(duration=10.0)  # above the threshold
 
 
 @pytest.mark.interpreted
 def test_a_collapse_comes_at_the_same_event_however_often_the_run_is_resumed():
     """The watch's counts are in the checkpoint; without them a run resumed in time would never collapse."""
-    particles = [gp.Particle((x, 1.0), (v, 0.0), 0.5) for x, v in ((2.5, 1.0), (5.0, 0.0), (7.0, -1.0))]
-    scene = gp.Scene(gp.Container((10.0, 2.0)), particles=particles, restitution=gp.Restitution(0.05))
-    whole, resumed = (gp.Simulation(scene, gp.EventDriven()) for _ in range(2))
+    whole, resumed = (gp.Simulation(three_on_a_line(0.05), gp.EventDriven()) for _ in range(2))
     with pytest.raises(gp.SimulationError, match="collapse"):
         whole.advance(duration=10.0)
     with pytest.raises(gp.SimulationError, match="collapse"):
@@ -243,11 +197,7 @@ def test_events_tell_spins(dimension):
     spins, particles = sim.events["spins"], sim.events["particles"]
     assert spins.shape == (100, 2) + (3,) * (dimension == 3)
     assert np.array_equal(np.isnan(spins[:, 1]).reshape(100, -1).any(axis=1), particles[:, 1] < 0)
-    last = {
-        particle: spin
-        for pair, of in zip(particles, spins, strict=True)
-        for particle, spin in zip(pair, of, strict=True)
-    }
+    last = dict(zip(particles.ravel(), spins.reshape(200, *spins.shape[2:]), strict=True))
     for particle in range(20):
         assert np.array_equal(sim.state.spins[particle], last.get(particle, 0 * sim.state.spins[particle]))
     smooth = events_of(replace(scene, restitution=gp.Restitution(0.9)), "boxes", 10)
@@ -266,11 +216,8 @@ def test_a_stack_at_rest_is_reported_not_looped_over():
 @pytest.mark.interpreted
 def test_particles_that_stick_fly_on_together():
     """e = 0, head on: they stay together and never meet again for rounding's sake."""
-    sim = collided(
-        gp.Restitution(0.0),
-        gp.Particle((5.0, 5.3), (1.0, 0.1), 0.5),
-        gp.Particle((9.0, 5.3), (0.3, 0.1), 0.5),
-    )
+    one, other = gp.Particle((5.0, 5.3), (1.0, 0.1), 0.5), gp.Particle((9.0, 5.3), (0.3, 0.1), 0.5)
+    sim = collided(gp.Restitution(0.0), one, other)
     assert sim.state.velocities == pytest.approx(np.array([[0.65, 0.1], [0.65, 0.1]]), rel=1e-13)
     sim.advance(duration=20.0)
     assert sim.tally.collisions == 1
@@ -294,26 +241,10 @@ def test_haffs_law():
         assert (ratio**-0.5 - 1.0) * tau / sim.time == pytest.approx(1.0, abs=0.05)
 
 
-@pytest.mark.thorough
-def test_rough_elastic_discs_share_the_energy_equally():
-    scene = replace(gas(2, 300, 0.1), restitution=gp.Restitution(1.0, 1.0))
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=2)
-    sim.advance(max_events=20_000)
-    shares = []
-    for _ in range(60):
-        sim.advance(max_events=1000)
-        shares.append(sim.state.rotational_energy / sim.state.kinetic_energy)
-    assert np.mean(shares) == pytest.approx(1 / 3, abs=0.01)
-    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-11)
-
-
 @pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("change", "key"),
     [
-        ({"restitution": {"normal": 1.1}}, "restitution.normal"),
-        ({"restitution": {"normal": -0.1}}, "restitution.normal"),
-        ({"restitution": {"tangential": -1.1}}, "restitution.tangential"),
         ({"restitution": {"rough": 1}}, "restitution.rough"),
         ({"restitution": {"tangential": 0.0}, "centres_to_walls": True}, "centres_to_walls"),
         (
@@ -322,10 +253,6 @@ def test_rough_elastic_discs_share_the_energy_equally():
         ),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": True, "speed": 1.0}]}, "species[0].speed"),
         ({"species": [{"count": 1, "radius": 0.5, "fixed": 1}]}, "species[0].fixed"),
-        (
-            {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "fixed": True}]},
-            "particles[0].velocity",
-        ),
         (
             {"particles": [{"position": [5, 5], "velocity": [1, 0], "radius": 1, "spin": [1, 0, 0]}]},
             "particles[0].spin",
@@ -336,23 +263,6 @@ def test_what_is_refused(change, key):
     with pytest.raises(gp.SceneError) as caught:
         gp.Scene.from_dict({"container": {"lengths": [10.0, 10.0]}} | change)
     assert caught.value.key == key
-
-
-@pytest.mark.interpreted
-def test_files_and_the_other_engine():
-    scene = gp.Scene(
-        gp.Container((10.0, 10.0)),
-        [gp.Species(1, 0.5, fixed=True)],
-        [gp.Particle((5.0, 5.0), (0.0, 0.0), 0.5, spin=2.0, moment_of_inertia=0.1)],
-        restitution=gp.Restitution(0.5, 0.5),
-    )
-    falling = replace(scene, gravity=(0.0, -1.0))
-    with pytest.raises(gp.SceneError, match="restitution"):
-        gp.Simulation(falling, gp.TimeStepped(0.1))
-    assert "fixed" not in str(gas(2, 3, 0.01).to_dict())
-    sim = gp.Simulation(gas(2, 3, 0.01), gp.EventDriven())
-    sim.add((0.6, 0.6), (0.0, 0.0), 0.1, spin=3.0)
-    assert sim.state.spins[0] == 3.0
 
 
 @pytest.mark.thorough

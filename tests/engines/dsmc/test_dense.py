@@ -99,21 +99,8 @@ def test_no_heat_flows_in_a_uniform_gas(threads):
     assert (np.abs(np.mean(flux, axis=0)) < 4.0 * error).all()
 
 
-def test_the_whole_tally_is_the_same_however_a_run_is_split():
-    scene = gas(3, 300, 0.2, "wall")
-    one, two = (advanced(scene, 1, model="enskog") for _ in range(2))
-    make(one, 60)
-    for _ in range(60):
-        make(two, 1)
-        assert two.state.count == 300
-    assert np.array_equal(one.state.positions, two.state.positions)
-    assert str(one.tally) == str(two.tally)
-
-
 def test_a_gas_denser_than_the_contact_values_is_refused():
-    crystal = gp.Scene(
-        gp.Container((3.0482, 5.2796), boundary="periodic"),
-        [gp.Species(18, 0.5, temperature=1.0, arrangement="lattice")],
-    )
+    discs = gp.Species(18, 0.5, temperature=1.0, arrangement="lattice")
+    crystal = gp.Scene(gp.Container((3.0482, 5.2796), "periodic"), [discs])
     with pytest.raises(gp.SceneError, match=r"packing_fraction = 0.8785: .*up to 0.7"):
         gp.Simulation(crystal, gp.DSMC(model="enskog"))

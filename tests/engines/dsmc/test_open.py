@@ -1,7 +1,5 @@
-"""Open faces under the DSMC engine: balances, and a flow between reservoirs beside the exact one.
-
-Points without collisions are in `tests/engines/test_open_faces.py`, for both engines; bits in `battery`.
-"""
+"""Open faces under the DSMC engine: balances, and a flow between reservoirs beside the exact one; points
+without collisions are in `tests/engines/test_open_faces.py`, for both engines."""
 
 import math
 from dataclasses import replace
@@ -31,15 +29,6 @@ def books(sim, begun):
     exchanged = np.abs(tally.wall_energy).sum() + begun
     assert state.energy + tally.wall_energy.sum() == pytest.approx(begun, abs=1e-12 * exchanged)
     sim.check_invariants()
-
-
-def test_number_and_energy_are_accounted_for():
-    sim = gp.Simulation(MIXED, gp.DSMC(), seed=7)
-    begun = sim.state.energy
-    for _ in range(20):
-        sim.advance(duration=5.0)
-        books(sim, begun)
-    assert sim.tally.entries[2] == sim.tally.entries[3] == 0 < sim.tally.entries[1]
 
 
 @settings(max_examples=settings.default.max_examples // 5)
@@ -101,9 +90,8 @@ def flow(sim, blocks, duration):
 
 
 def test_a_flow_between_reservoirs_is_that_of_hard_spheres():
-    """Over four mean free paths. No wall holds the gas back, but in collisions with the gas that comes the
-    other way it loses a tenth of the flow. At this density the excluded volume, which the engine lacks, is
-    1.6 % at most."""
+    """Over four mean free paths: collisions with the gas that comes the other way take a tenth of the flow;
+    the excluded volume, which the engine lacks, is 1.6 % at most."""
     dense, thin = 0.002, 0.0004
     scene = between(dense, thin, 4.0 / (math.sqrt(2.0) * 6.0 * dense), 70)
     rates = []
@@ -140,8 +128,6 @@ def test_a_full_container_ends_the_run():
 def test_reservoirs_that_are_refused():
     """An ideal gas of an activity such as that of a dense fluid would be more particles than fit."""
     scene = replace(MIXED, faces={"x_low": gp.Open(20.0, 1.0)})
-    with pytest.raises(
-        gp.SceneError, match='faces.x_low = .open.: .* of which 1\\d\\d\\d fit.* needs the "event"'
-    ):
+    with pytest.raises(gp.SceneError, match='faces.x_low = .open.: .* of which 1... fit.* needs the "event"'):
         gp.Simulation(scene, gp.DSMC())
     gp.Simulation(scene, gp.EventDriven())

@@ -25,15 +25,13 @@ def test_rates_are_those_of_theory(dimension):
     assert found.speed == pytest.approx(float(theory.mean_speed(dimension)), rel=0.02)
 
 
-PLATES = {"boundary": ("periodic", "periodic", "wall")}
 SLIDING = {"z_low": gp.Thermal(1.0), "z_high": gp.Thermal(1.0, velocity=(0.5, 0.0, 0.0))}
 
 
-def plates(count=2000, radius=0.178, faces=SLIDING, **more):
+def plates(radius=0.178, faces=SLIDING, **more):
     """A gas between plates, eleven mean free paths apart."""
-    container = gp.Container((10.0, 10.0, 10.0), **PLATES)
-    species = [gp.Species(count, radius, temperature=1.0)]
-    return gp.Scene(container, species, faces=faces, **more)
+    container = gp.Container((10.0, 10.0, 10.0), ("periodic", "periodic", "wall"))
+    return gp.Scene(container, [gp.Species(2000, radius, temperature=1.0)], faces=faces, **more)
 
 
 def of_scene(scene, **settings):
@@ -69,9 +67,8 @@ def test_no_other_cells_have_smaller_errors(scene, model):
 
 def test_the_predicted_error_is_that_of_the_literature():
     scene = gas(3, 1000, 0.001)
-    medium = Medium(
-        "boltzmann", scene, Rates(1.0, math.sqrt(8.0 / math.pi), math.sqrt(8.0 / math.pi)), 1000.0
-    )
+    speed = math.sqrt(8.0 / math.pi)
+    medium = Medium("boltzmann", scene, Rates(1.0, speed, speed), 1000.0)
     side = scene.container.lengths[0]
     width = side / 4 / medium.gas_rates.path
     assert medium.errors((4,) * 3, 1e-9).width == pytest.approx(16.0 / (45.0 * math.pi) * width**2)
@@ -124,33 +121,10 @@ def test_what_the_boltzmann_model_neglects_is_stated():
     assert not gp.DSMC(cells_per_side=8).remarks(gas(3, 20000, 0.001))
 
 
-@pytest.mark.parametrize(
-    ("key", "scene", "alternative"),
-    [
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Well(1.0, 0.1)}), '"step"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Sticky(1.0)}), '"step"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Vibrating(0.1, 1.0)}), '"event"'),
-        ("faces.x_low", gp.Scene(BOX, [FEW], faces={"x_low": gp.Piston(10.0, 1.0)}), '"event"'),
-        ("fixed", gp.Scene(BOX, [FEW, gp.Species(2, 0.1, fixed=True)]), '"step"'),
-        ("radius", gp.Scene(BOX, [FEW, gp.Species(2, 1.0, temperature=1.0)]), '"step"'),
-        (
-            "restitution.contact_duration",
-            gp.Scene(BOX, [FEW], restitution=gp.Restitution(0.9, contact_duration=0.1)),
-            '"event"',
-        ),
-        (
-            "walls",
-            gp.Scene(gp.Container((9.0, 9.0)), [FEW], walls=[gp.Wall((2.0, 2.0), (4.0, 4.0))]),
-            '"event"',
-        ),
-    ],
-)
-def test_what_it_does_not_model_is_refused_with_an_alternative(key, scene, alternative):
-    with pytest.raises(gp.SceneError) as refused:
+def test_sizes_that_are_too_different_are_refused_with_an_alternative():
+    scene = gp.Scene(BOX, [FEW, gp.Species(2, 1.0, temperature=1.0)])
+    with pytest.raises(gp.SceneError, match='^radius = [^\n]*"step"[^\n]*$'):
         gp.Simulation(scene, gp.DSMC(time_step=0.1))
-    assert refused.value.key == key
-    assert alternative in refused.value.rule
-    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -182,12 +156,6 @@ def test_settings_are_refused_that_do_not_fit_the_scene():
     for limits in ({"max_events": 3}, {"duration": 1.0, "max_work": 3}):
         with pytest.raises(gp.SceneError, match='"event"'):
             sim.advance(**limits)
-
-
-def test_an_engine_is_a_mapping_and_back():
-    engine = gp.engine_from_dict({"name": "dsmc", "cells_per_side": [2, 3, 4], "model": "enskog"})
-    assert engine == gp.DSMC(cells_per_side=(2, 3, 4), model="enskog")
-    assert gp.engine_from_dict(gp.engine_to_dict(engine)) == engine
 
 
 def test_an_empty_scene_and_one_particle():

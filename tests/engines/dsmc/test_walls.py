@@ -11,18 +11,14 @@ import gaspart as gp
 pytestmark = pytest.mark.thorough
 
 
-def slab(faces, count=4000, radius=1e-6, length=10.0, **rest):
-    """Spheres between two walls across x."""
-    container = gp.Container((length, 10.0, 10.0), ("wall", "periodic", "periodic"))
-    return gp.Scene(container, [gp.Species(count, radius, temperature=1.0)], faces=faces, **rest)
-
-
 @pytest.mark.parametrize("components", ["all", "normal"])
 def test_free_molecules_carry_heat_between_thermal_faces(components):
     """n v^2-weighted fluxes of two half-Maxwellian streams, of mass 1: each takes 2 T per particle (all
     components) or T (normal one) at the rate J = n / (sqrt(pi/(2 T1)) + sqrt(pi/(2 T2))), exactly."""
     hot, cold, n, volume = 4.0, 1.0, 4000, 1000.0
-    scene = slab({"x_low": gp.Thermal(hot, components), "x_high": gp.Thermal(cold, components)}, n)
+    container = gp.Container((10.0, 10.0, 10.0), ("wall", "periodic", "periodic"))
+    faces = {"x_low": gp.Thermal(hot, components), "x_high": gp.Thermal(cold, components)}
+    scene = gp.Scene(container, [gp.Species(n, 1e-6, temperature=1.0)], faces=faces)
     sim = advanced(scene, 3000, settle=200, time_step=0.5, cells_per_side=1)
     stream = n / volume / (math.sqrt(math.pi / (2.0 * hot)) + math.sqrt(math.pi / (2.0 * cold)))
     per_particle = 2.0 if components == "all" else 1.0
@@ -34,58 +30,6 @@ def test_free_molecules_carry_heat_between_thermal_faces(components):
     sim.check_invariants()
 
 
-def test_a_gas_takes_the_temperature_of_its_walls():
-    scene = slab({"x_low": gp.Thermal(2.0), "x_high": gp.Thermal(2.0)}, 4000, radius=0.1)
-    sim = advanced(scene, 600, settle=600)
-    temperature = 2.0 * sim.state.kinetic_energy / (3 * 4000)
-    assert temperature == pytest.approx(2.0, rel=4.0 * math.sqrt(2.0 / 12000))
-
-
-def test_the_pressure_on_hard_walls_is_that_of_an_ideal_gas():
-    scene = slab({}, 4000, radius=0.001)
-    sim = advanced(scene, 2000, settle=10, time_step=0.3, cells_per_side=4)
-    width = 10.0 - 0.002
-    square = (sim.initial_state.velocities[:, 0] ** 2).sum()  # hardly any collisions: each keeps its own
-    expected = square / width * sim.tally.time
-    assert sim.tally.wall_impulse[:2] == pytest.approx(expected, rel=0.01)
-
-
-def test_a_gas_that_falls_has_the_barometric_profile():
-    container = gp.Container((20.0, 20.0, 20.0), ("periodic", "periodic", "wall"))
-    species = [gp.Species(6000, 0.02, temperature=1.0)]
-    scene = gp.Scene(container, species, gravity=(0.0, 0.0, -0.3), faces={"z_low": gp.Thermal(1.0)})
-    sim = advanced(scene, 1, settle=800, time_step=0.5, cells_per_side=(4, 4, 20))
-    heights = []
-    for _ in range(40):
-        sim.advance(duration=20.0)
-        heights.append((sim.state.positions[:, 2] - 0.02).mean())
-    scale, top = 1.0 / 0.3, 20.0 - 0.04
-    expected = scale - top / math.expm1(top / scale)
-    error = np.std(heights) / math.sqrt(len(heights) / 4)
-    assert np.mean(heights) == pytest.approx(expected, abs=4.0 * error)
-    sim.check_invariants()
-
-
-def test_a_particle_bounces_on_a_floor_for_ever():
-    particle = gp.Particle((5.0, 3.0), (0.3, 0.0), 0.5)
-    scene = gp.Scene(
-        gp.Container((10.0, 10.0), ("periodic", "wall")), particles=[particle], gravity=(0.0, -1.0)
-    )
-    sim = advanced(scene, 10_000, time_step=0.1, cells_per_side=1)
-    assert sim.state.energy == pytest.approx(sim.initial_state.energy, rel=1e-10)
-    period = 2.0 * math.sqrt(2.0 * 2.5)
-    assert sim.tally.wall_hits[2] == pytest.approx(1000.0 / period, abs=1.5)
-
-
-def test_a_corner_reflects_both_components():
-    particle = gp.Particle((9.0, 8.5), (1.0, 1.0), 0.5)
-    scene = gp.Scene(gp.Container((10.0, 10.0)), particles=[particle])
-    sim = advanced(scene, 1, time_step=2.0, cells_per_side=1)
-    assert sim.state.positions[0] == pytest.approx((8.0, 8.5))
-    assert sim.state.velocities[0] == pytest.approx((-1.0, -1.0))
-    assert sim.tally.wall_hits.tolist() == [0, 1, 0, 1]
-
-
 def light_in_a_hundred(seed=1):
     """A hundred particles that hardly move and one of the mass 1e-12, so small that nothing collides."""
     kinds = [gp.Species(100, 1e-6, temperature=1.0), gp.Species(1, 1e-6, mass=1e-12, temperature=1.0)]
@@ -93,8 +37,7 @@ def light_in_a_hundred(seed=1):
 
 
 def test_a_light_particle_flies_the_whole_step():
-    """It meets walls thousands of times in a step; each component keeps its size, and gives 2 m v for each
-    crossing."""
+    """It meets walls thousands of times in a step; each component keeps its size."""
     sim = light_in_a_hundred()
     start = sim.initial_state
     sim.advance(duration=200 * sim.engine.time_step)
@@ -109,9 +52,8 @@ def test_a_light_particle_flies_the_whole_step():
 @pytest.mark.parametrize("gravity", [None, (0.0, 0.0, -1e-3)])
 def test_a_step_of_thirty_crossings_gives_the_whole_pressure(gravity):
     """The momentum given to the walls is that of free flights: exact, whatever the step."""
-    scene = gp.Scene(
-        gp.Container((10.0, 10.0, 10.0)), [gp.Species(100, 1e-7, temperature=1.0)], gravity=gravity
-    )
+    points = [gp.Species(100, 1e-7, temperature=1.0)]
+    scene = gp.Scene(gp.Container((10.0, 10.0, 10.0)), points, gravity=gravity)
     sims = [gp.Simulation(scene, gp.DSMC(time_step=step), 4) for step in (300.0, 1.0)]
     for sim in sims:
         sim.advance(duration=3000.0)
@@ -166,10 +108,8 @@ def test_images_that_cannot_be_counted_end_a_run_with_a_line():
 
 
 def rate_in_slit(scene, model):
-    """Collisions per time of a dilute gas between walls of z, of kinds that are uniform in what they reach.
-
-    Boltzmann: pairs collide where both are. Enskog: centres are a contact distance apart in any direction.
-    """
+    """Collisions per time of a dilute gas of kinds that are uniform in what they reach between walls of z: by
+    Boltzmann where both are, by Enskog with centres a contact distance apart in any direction."""
     x, y, width = scene.container.lengths
     total, cosines = 0.0, np.linspace(-1.0, 1.0, 1001)
     for n, first in enumerate(scene.species):
@@ -193,7 +133,7 @@ def rate_in_slit(scene, model):
     [
         ("boltzmann", (1, 1, 4), 40.0),
         ("boltzmann", (2, 2, 9), 40.0),
-        pytest.param("enskog", (1, 1, 4), 160.0, marks=pytest.mark.thorough),
+        ("enskog", (1, 1, 4), 160.0),
     ],
 )
 def test_particles_of_two_sizes_collide_as_often_as_their_room_says(model, cells, side):
@@ -228,13 +168,8 @@ def sliding(axis, speed, dimension):
 def test_default_cells_give_the_stress_between_sliding_plates(tmp_path):
     """Eleven free paths apart. Cubes of the same number exceed it by 31 %."""
     container = gp.Container((10.0,) * 3, ("periodic", "periodic", "wall"))
-    faces = sliding("z", 0.5, 3)
-    scene = gp.Scene(
-        container,
-        [gp.Species(2000, 0.177953, temperature=1.0)],
-        faces=faces,
-        centres_to_walls=True,
-    )
+    gas = [gp.Species(2000, 0.177953, temperature=1.0)]
+    scene = gp.Scene(container, gas, faces=sliding("z", 0.5, 3), centres_to_walls=True)
     value, error, theory, unsure = stress_of(scene, "boltzmann", 400.0, 2.0, tmp_path / "run.nc")
     assert value == pytest.approx(theory, abs=3.0 * math.hypot(error, unsure))
     assert math.hypot(error, unsure) < 0.07 * abs(theory)
@@ -242,11 +177,8 @@ def test_default_cells_give_the_stress_between_sliding_plates(tmp_path):
 
 def test_default_cells_give_the_stress_of_a_dense_gas(tmp_path):
     """Of the template `shear`, which cubes of 64 discs exceed 3.8 times."""
-    scene = gp.Scene(
-        gp.Container((60.0, 40.0), ("periodic", "wall")),
-        [gp.Species(400, 0.5, temperature=1.0)],
-        faces=sliding("y", 1.0, 2),
-    )
+    container, gas = gp.Container((60.0, 40.0), ("periodic", "wall")), gp.Species(400, 0.5, temperature=1.0)
+    scene = gp.Scene(container, [gas], faces=sliding("y", 1.0, 2))
     value, error, _, _ = stress_of(scene, "enskog", 2000.0, 10.0, tmp_path / "run.nc")
     exact, unsure = -0.01645, 0.00047  # by the event-driven engine, in a run of 2000
     bias = gp.DSMC(model="enskog").bias(scene, "fluxes")

@@ -72,20 +72,6 @@ def test_pairs_at_one_place_and_in_a_dense_cluster_are_counted():
     assert np.array_equal(pair_counts(clustered, (5.0,) * 3, 10, 0.3), expected)
 
 
-def test_each_pair_of_species_is_a_difference_of_counts():
-    """All pairs are those within each species and those between them."""
-    lengths = np.array(CONTAINERS["cube"])
-    frames = random_frames(lengths, 90)
-    whole, one, other = (
-        pair_counts(part, lengths, 8, 2.0) for part in (frames, frames[:, :30], frames[:, 30:])
-    )
-    apart = frames[:, :30, None] - frames[:, None, 30:]
-    apart -= lengths * np.round(apart / lengths)
-    distance = np.sqrt((apart**2).sum(axis=-1))
-    between = np.histogram(distance[distance < 2.0], 8, (0.0, 2.0))[0]
-    assert np.array_equal(whole - one - other, between)
-
-
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_counts_do_not_depend_on_the_number_of_threads(threads):
     lengths = np.array(CONTAINERS["slab"])
@@ -117,12 +103,6 @@ def test_g_is_that_of_freud(name, count):
     assert np.abs(rdf.bin_counts - 2 * counts).sum() <= 8  # freud counts each pair twice
     same = rdf.bin_counts == 2 * counts
     assert same.sum() >= 9 and g[same] == pytest.approx(rdf.rdf[same], rel=1e-5, abs=1e-6)
-
-
-def test_few_random_particles_have_a_pair_distribution_of_one():
-    frames = 12.0 * np.random.default_rng(4).random((2000, 5, 2))
-    _, g = radial_distribution(frames, (12.0, 12.0), 1, 5.0)
-    assert g[0] == pytest.approx(1.0, abs=0.02)  # relative to N^2 pairs: 0.8
 
 
 def test_digits_are_not_lost_far_from_the_origin_or_in_long_containers():

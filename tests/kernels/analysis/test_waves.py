@@ -41,23 +41,6 @@ def test_large_wave_numbers_keep_their_digits():
     assert np.abs(amplitudes(frames, lengths, waves) - summed(frames, lengths, waves)).max() < 1e-10
 
 
-def test_waves_of_both_signs_along_each_axis_are_conjugate():
-    waves = np.array([(3, -2, 5), (-3, 2, -5), (0, 0, 1), (0, 0, -1), (1, 0, 0), (0, 0, 0)])
-    frames = random_frames((4.0, 5.0, 6.0), 50)
-    found = amplitudes(frames, (4.0, 5.0, 6.0), waves)
-    assert np.array_equal(found[:, 0], found[:, 1].conj()) and np.array_equal(found[:, 2], found[:, 3].conj())
-    assert np.array_equal(found[:, 5], np.full(2, 50.0 + 0.0j))
-
-
-def test_a_crystal_scatters_in_its_reciprocal_lattice_alone():
-    sites = np.stack(np.meshgrid(*[np.arange(6.0)] * 3), axis=-1).reshape(1, -1, 3) + 0.3
-    waves, _ = wave_vectors((6.0,) * 3, 7.0)
-    found = factors(sites, (6.0,) * 3, waves)[0]
-    bragg = (waves % 6 == 0).all(axis=1)
-    assert bragg.sum() == 3 and found[bragg] == pytest.approx(216.0)
-    assert found[~bragg].max() < 1e-24
-
-
 @pytest.mark.parametrize("threads", [2, 3])
 def test_the_bits_do_not_depend_on_the_number_of_threads(threads):
     lengths = (4.0, 5.0, 7.0)

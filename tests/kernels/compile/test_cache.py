@@ -17,10 +17,10 @@ def test_a_cache_that_cannot_be_written_is_reported_and_costs_time_only(tmp_path
     """Compiled anew, and what is computed is the same: a kernel of one line stands for all."""
     (tmp_path / "a file").write_text("")
     code = "from gaspart.kernels.compile.policy import kernel; print(kernel(lambda x: 3.0 * x)(0.1))"
-    environment = os.environ | {"GASPART_CACHE": str(tmp_path / "a file" / "cache")}
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
-    assert (done.returncode, done.stdout) == (0, f"{3.0 * 0.1}\n")
-    assert "cannot write the kernel cache" in done.stderr and "set GASPART_CACHE" in done.stderr
+    process = compiled(tmp_path / "a file" / "cache", code)
+    out, errors = process.communicate()
+    assert (process.returncode, out) == (0, f"{3.0 * 0.1}\n")
+    assert "cannot write the kernel cache" in errors and "set GASPART_CACHE" in errors
 
 
 @pytest.mark.parametrize("chosen", [True, False], ids=["chosen", "not chosen"])
@@ -86,17 +86,11 @@ _COMPILES = """
 """
 
 
-def compiled(cache, code=_COMPILES, **more):
+def compiled(cache, code=_COMPILES):
     """The process that runs `code` with this cache."""
     command = [sys.executable, "-c", textwrap.dedent(code)]
-    return subprocess.Popen(
-        command,
-        env=os.environ | {"GASPART_CACHE": str(cache)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        **more,
-    )
+    environment, pipe = os.environ | {"GASPART_CACHE": str(cache)}, subprocess.PIPE
+    return subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True)
 
 
 def damaged(content, how):
@@ -134,9 +128,8 @@ def test_a_damaged_file_is_compiled_and_written_again(tmp_path):
     (folder / "not").write_bytes(whole)
     for how in ("empty", "truncated", "zeros", "flipped", "other checksum", "longer"):
         (folder / how.replace(" ", "_")).write_bytes(damaged(whole, how))
-    found, errors = compiled(
-        tmp_path, _COMPILES_AGAIN.format(file=str(file), folder=str(folder))
-    ).communicate()
+    code = _COMPILES_AGAIN.format(file=str(file), folder=str(folder))
+    found, errors = compiled(tmp_path, code).communicate()
     value = expected.split()[0]
     lines = [f"{one.name} {value} {int(one.name == 'not')} True" for one in sorted(folder.iterdir())]
     assert (found.splitlines(), errors) == (lines, "")

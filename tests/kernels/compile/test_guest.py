@@ -145,8 +145,7 @@ of numba's classes."""
 
 
 def after_a_run(*modules):
-    command = [sys.executable, "-c", OTHERS, *modules]
-    return subprocess.run(command, capture_output=True, text=True)
+    return subprocess.run([sys.executable, "-c", OTHERS, *modules], capture_output=True, text=True)
 
 
 def test_object_mode_and_lifted_loops_of_others_work_after_a_run():

@@ -78,20 +78,13 @@ def renames(outer):
 
 
 @inner_kernel
-def assigns(outer):
-    found = outer.more[0]
-    outer = found
-    return outer
-
-
-@inner_kernel
 def asks(outer):
     return 1.0 if outer.rest is None else 2.0
 
 
 @kernel
 def called_by_python(outer):
-    return hands_on(outer), hands_on_by_name(outer), renames(outer), assigns(outer), asks(outer)
+    return hands_on(outer), hands_on_by_name(outer), renames(outer), asks(outer)
 
 
 @pytest.mark.parametrize(
@@ -102,7 +95,6 @@ def called_by_python(outer):
         (hands_on, outer(rest=NONE), by_entries(outer(inner(other=NONE), NONE, NONE))),
         (hands_on_by_name, outer(), whole(outer())),
         (renames, outer(), whole(outer())),
-        (assigns, outer(), whole(outer())),
         (asks, outer(), by_entries(outer(NONE, VECTOR, NONE))),
         (asks, outer(rest=NONE), by_entries(outer(NONE, NONE, NONE))),
     ],
@@ -121,7 +113,7 @@ def test_what_is_absent_stays_absent_and_functions_of_no_module_get_all():
 
 def test_a_call_passes_these_entries_with_their_values():
     given = Outer(Inner(np.array([2.0, 5.0]), 0.0), np.array([7.0]), np.array([11.0]))
-    assert called_by_python(given) == (2.0 + 5.0 + 11.0, 2.0, 2.0, 11.0, 2.0)
+    assert called_by_python(given) == (2.0 + 5.0 + 11.0, 2.0, 2.0, 2.0)
     assert called_by_python(given._replace(rest=None))[0] == 2.0 + 5.0
     _, _, types, _ = entry.get_call_template((numba.typeof(given),), {})
     assert types == (by_entries(outer(inner(other=NONE), NONE, NONE)),)

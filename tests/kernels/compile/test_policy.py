@@ -128,10 +128,7 @@ print(numba.__version__, *(hashlib.sha256(part.tobytes()).hexdigest() for part i
 
 
 def simulated(*others, cache=None):
-    """Return what a simulation prints and the times at which the kernels in the cache were written.
-
-    The process finds packages in the folders `others` first.
-    """
+    """What a simulation prints, with packages in `others` first, and when cached kernels were written."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, others))}
     environment |= {"GASPART_CACHE": str(cache)} if cache else {}
     command = [sys.executable, "-c", SIMULATION]

@@ -65,15 +65,10 @@ def test_an_older_processor_does_not(folder, tmp_path, lacking):
     assert loaded(tmp_path, system=("a system", "an older processor", features)) is None
 
 
-@pytest.mark.parametrize(
-    "other", [{"types": "others"}, {"bytecode": "other"}, {"sources": "others"}, {"stamp": "other options"}]
-)
-def test_code_of_other_types_sources_and_options_is_not_found(folder, tmp_path, other):
-    assert loaded(tmp_path, **other) is None
-
-
-def test_nor_is_that_of_another_system_or_numba(folder, tmp_path, monkeypatch):
-    assert loaded(tmp_path, system=("another system", *HERE[1:])) is None
+def test_code_of_other_types_sources_options_systems_and_numbas_is_not_found(folder, tmp_path, monkeypatch):
+    others = {"types": "others", "bytecode": "other", "sources": "others", "stamp": "other options"}
+    for key, value in (others | {"system": ("another system", *HERE[1:])}).items():
+        assert loaded(tmp_path, **{key: value}) is None
     monkeypatch.setattr(files.caching.numba, "__version__", "0.68.99")
     assert loaded(tmp_path) is None
 
@@ -132,9 +127,8 @@ def test_a_kernel_compiled_for_many_processors_runs_and_a_damaged_one_is_compile
         environment = os.environ | {"GASPART_CACHE": str(tmp_path / cache)} | more
         environment["PYTHONPATH"] = str(package.parent)
         command = [sys.executable, "-c", PROGRAM]
-        return subprocess.run(
-            command, capture_output=True, text=True, env=environment, check=True
-        ).stdout.split()
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
+        return done.stdout.split()
 
     bits, _ = run("v3", NUMBA_CPU_NAME=shipped.PROCESSOR, NUMBA_CPU_FEATURES=shipped.FEATURES)
     for path, content in wheels.shipped_files(tmp_path / "v3").items():

@@ -56,24 +56,22 @@ def main():
     module.time_of = counted
     rng = np.random.default_rng(2)
     never, zeros = (lambda time, number: np.inf), np.zeros(n)
+
+    def again(time, number):
+        return time if number <= n else np.inf
+
+    def soon(last):
+        """Return the time a little later, up to this number of events."""
+        return lambda time, number: time + 1e-13 * rng.random() if number <= last else np.inf
+
     close = np.append(rng.random(n - 1) * 1e-12, 1e9)
     orders = {
         "simultaneous faces": (particles(zeros, pairs=False), never),
         "simultaneous contacts": (particles(zeros, pairs=True), never),
         "close beside the mean time": (particles(close, pairs=True), never),
-        "later events at the same time": (
-            particles(zeros, pairs=False),
-            lambda time, number: time if number <= n else np.inf,
-        ),
-        "later events in the same bucket": (
-            particles(close, pairs=True),
-            lambda time, number: time + 1e-13 * rng.random() if number <= 2 * n else np.inf,
-        ),
-        "events of others that change": (
-            particles(close, pairs=True),
-            lambda time, number: time + 1e-13 * rng.random() if number <= n else np.inf,
-            3,
-        ),
+        "later events at the same time": (particles(zeros, pairs=False), again),
+        "later events in the same bucket": (particles(close, pairs=True), soon(2 * n)),
+        "events of others that change": (particles(close, pairs=True), soon(n), 3),
         "evenly spread": (particles(rng.random(n), pairs=True), never),
     }
     for name, order in orders.items():

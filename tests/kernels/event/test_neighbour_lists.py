@@ -44,8 +44,7 @@ def test_lists_hold_exactly_what_the_centres_say(dimension, boundary):
 @pytest.mark.interpreted
 @pytest.mark.parametrize("lengths", [(8.0, 6.0), (5.0, 6.5, 7.5)])
 def test_lists_are_complete_in_uneven_containers(lengths):
-    species = [gp.Species(16, 0.5, temperature=1.0)]
-    check_lists(gp.Scene(gp.Container(lengths, "periodic"), species), 8)
+    check_lists(gp.Scene(gp.Container(lengths, "periodic"), [gp.Species(16, 0.5, temperature=1.0)]), 8)
 
 
 def check_lists(scene, events):

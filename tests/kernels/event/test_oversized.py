@@ -1,15 +1,11 @@
 """Particles too large for the boxes: the same events as without a partition, in less work."""
 
-import math
-
-import numpy as np
 import pytest
 from referee import events_of, same_bits
 from scenes import gas
 
 import gaspart as gp
 from gaspart.state.boxes import largest_in_boxes, work
-from gaspart.state.initial import initial_state
 
 
 def uneven_gas(dimension, count, ratio):
@@ -38,23 +34,3 @@ def test_which_particles_are_kept_outside():
     alike = gp.Scene(gp.Container((40.0, 40.0)), [gp.Species(50, 0.5), gp.Species(50, 1.0)])
     assert largest_in_boxes(alike) == 1.0
     assert largest_in_boxes(gp.Scene(gp.Container((4.0, 4.0)))) == 0.0
-
-
-@pytest.mark.interpreted
-def test_boxes_narrower_than_most_particles_are_refused():
-    scene = gp.Scene(gp.Container((10.0, 10.0)), [gp.Species(5, 0.1), gp.Species(5, 0.6)])
-    with pytest.raises(gp.SceneError, match="boxes_per_side = 9: boxes must not be narrower"):
-        gp.Simulation(scene, gp.EventDriven(boxes_per_side=9))
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_big_particles_among_ten_thousand_small_ones_are_placed(dimension):
-    side = 60.0 if dimension == 3 else 600.0
-    species = [gp.Species(10_000, 0.5), gp.Species(3, 8.0)]
-    scene = gp.Scene(gp.Container((side,) * dimension, "periodic"), species)
-    state = initial_state(scene, 1)
-    for n in range(10_000, 10_003):
-        gaps = np.abs(state.positions - state.positions[n])
-        squares = (np.minimum(gaps, side - gaps) ** 2).sum(axis=1)
-        squares[n] = math.inf
-        assert (squares >= (state.radii + 8.0) ** 2).all()

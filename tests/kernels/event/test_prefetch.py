@@ -29,26 +29,19 @@ def predicted(contact_time, face_time, face):
     return predictions
 
 
-def test_before_a_contact_all_boxes_about_the_particle_are_asked_for():
-    assert look(predicted(1.0, 2.0, BOX_FACES), 0) == ((4, 5, 6), (0, 0, 0))
-
-
 @pytest.mark.parametrize(
-    ("face", "at", "side"),
+    ("times", "face", "at", "side"),
     [
-        (BOX_FACES, (3, 5, 6), (-1, 0, 0)),
-        (BOX_FACES + 1, (5, 5, 6), (1, 0, 0)),
-        (BOX_FACES + 4, (4, 5, 5), (0, 0, -1)),
-        (BOX_FACES + 3, (4, 6, 6), (0, 1, 0)),
+        ((1.0, 2.0), BOX_FACES, (4, 5, 6), (0, 0, 0)),  # a contact: all boxes about the particle
+        ((2.0, 1.0), BOX_FACES, (3, 5, 6), (-1, 0, 0)),  # a crossing: those beyond the next box
+        ((2.0, 1.0), BOX_FACES + 1, (5, 5, 6), (1, 0, 0)),
+        ((2.0, 1.0), BOX_FACES + 4, (4, 5, 5), (0, 0, -1)),
+        ((2.0, 1.0), BOX_FACES + 3, (4, 6, 6), (0, 1, 0)),
+        *(((2.0, 1.0), face, (4, 5, 6), (0, 0, 0)) for face in (0, 5, WELL_EDGES)),  # of the container
     ],
 )
-def test_before_a_crossing_those_beyond_the_next_box(face, at, side):
-    assert look(predicted(2.0, 1.0, face), 0) == (at, side)
-
-
-@pytest.mark.parametrize("face", [0, 5, WELL_EDGES])
-def test_at_the_faces_of_the_container_all(face):
-    assert look(predicted(2.0, 1.0, face), 0) == ((4, 5, 6), (0, 0, 0))
+def test_boxes_that_the_next_event_needs_are_asked_for(times, face, at, side):
+    assert look(predicted(*times, face), 0) == (at, side)
 
 
 def test_the_machine_code_fetches():

@@ -126,11 +126,8 @@ def test_a_disc_that_is_slow_goes_round_the_end():
 @pytest.mark.interpreted
 def test_a_sphere_on_a_plate_and_in_the_trough_of_two():
     plate = [gp.Plate((2.0, 2.0, 5.0), ((6.0, 0.0, 0.0), (0.0, 6.0, 0.0)))]
-    close(
-        after(spheres([((5.0, 5.0, 5.5), (1.0, 0.5, 0.0))], plate), 4.0),
-        [(9.0, 7.0, 5.0)],
-        [(1.0, 0.5, -1.0)],
-    )
+    sim = after(spheres([((5.0, 5.0, 5.5), (1.0, 0.5, 0.0))], plate), 4.0)
+    close(sim, [(9.0, 7.0, 5.0)], [(1.0, 0.5, -1.0)])
     trough = [gp.Plate((1.0, 5.0, 5.0), ((8.0, 0.0, 0.0), (0.0, side, 3.0))) for side in (3.0, -3.0)]
     start = (5.0, 5.0, 5.0 + 0.5 / ROOT)
     sim = after(spheres([(start, (0.5, 0.0, 0.0))], trough), 6.0)

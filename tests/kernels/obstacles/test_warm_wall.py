@@ -83,23 +83,6 @@ def test_velocities_after_a_wall(dimension):
         assert abs((across[side] * along[side, 0]).mean()) < 3.5 * HOT * math.sqrt(2.0 / count)
 
 
-@pytest.mark.thorough
-def test_a_gas_takes_the_temperature_of_a_wall():
-    """Of two masses, by collisions and hits, from another temperature; the energy is counted."""
-    kinds = [gp.Species(40, 0.2, mass=mass, temperature=0.3) for mass in (1.0, 3.0)]
-    scene = replace(DISCS, species=kinds, faces={})
-    simulation = gp.Simulation(scene, gp.EventDriven(), seed=3)
-    simulation.advance(duration=200.0)
-    found = []
-    for _ in range(24):
-        simulation.advance(duration=40.0)
-        state = simulation.state
-        energy = state.masses * (state.velocities**2).sum(axis=1) / 2.0
-        found.append([energy[:40].mean(), energy[40:].mean()])
-    simulation.check_invariants()
-    assert np.mean(found, axis=0) == pytest.approx([HOT, HOT], abs=3.0 * HOT / math.sqrt(24 * 40))
-
-
 def test_a_wall_and_a_force_have_a_steady_state():
     """A force along a warm wall, which takes its momentum and its heat."""
     container = gp.Container((6.0, 6.0), "periodic")
@@ -116,5 +99,3 @@ def test_what_is_refused():
     wall = {"start": [1.0, 1.0], "end": [5.0, 5.0], "temperature": 0.0}
     with pytest.raises(gp.SceneError, match=r"walls\[0\].temperature = 0.0: must be positive"):
         gp.Scene.from_dict({"container": {"lengths": [9.0, 9.0]}, "walls": [wall]})
-    with pytest.raises(gp.SceneError, match='walls = .*"event"'):
-        gp.Simulation(DISCS, gp.TimeStepped(time_step=0.01))

@@ -100,13 +100,8 @@ def test_a_sphere_slides_along_a_wedge(plates, along):
     tilt = math.atan2(rise[2], rise[0])
     at = 1.0 + RADIUS / math.tan(0.5 * tilt)
     particle = gp.Particle((at + 0.01, 3.0, height + RADIUS), (-SPEED, along, 0.0), RADIUS)
-    scene = gp.Scene(
-        gp.Container((10.0, 10.0, 10.0)),
-        particles=[particle],
-        walls=walls,
-        restitution=LAW,
-        gravity=(0.0, 0.0, -1.0),
-    )
+    rest = {"walls": walls, "restitution": LAW, "gravity": (0.0, 0.0, -1.0)}
+    scene = gp.Scene(gp.Container((10.0, 10.0, 10.0)), particles=[particle], **rest)
     sim = after(scene, 1000.0)
     assert sim.state.positions[0] == pytest.approx([at, 3.0 + 1000.0 * along, height + RADIUS], abs=1e-9)
     assert sim.state.velocities[0] == pytest.approx([0.0, along, 0.0], abs=1e-12)

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import gaspart as gp
@@ -30,11 +29,7 @@ def test_a_particle_falls_into_a_well_and_climbs_out(search):
     assert sim.events["time"] == pytest.approx([3.5, 4.0, 4.5], rel=1e-15)
     assert sim.events["particles"].tolist() == [[0, -1]] * 3
     assert sim.events["positions"][:, 0, 0].tolist() == [1.5, 0.5, 1.5]
-    assert sim.events["velocities"][:, 0].tolist() == [
-        [-2.0, 0.25, 0.0],
-        [2.0, 0.25, 0.0],
-        [1.0, 0.25, 0.0],
-    ]
+    assert sim.events["velocities"][:, 0].tolist() == [[v, 0.25, 0.0] for v in (-2.0, 2.0, 1.0)]
     assert sim.tally.wall_hits.tolist() == [1, 0, 0, 0, 0, 0]
     assert sim.tally.wall_impulse[0] == 4.0  # of the way in, the hit and the way out together
 
@@ -61,32 +56,6 @@ def test_a_slow_particle_does_not_leave_a_well(search):
         assert (sim.state.velocities[0, 0] > 0.0) == leaves
         assert (sim.state.well_energies[0] == 0.0) == leaves
         sim.check_invariants()
-
-
-@pytest.mark.thorough
-def test_an_ideal_gas_in_a_well():
-    """N_ads/N_gas = w/(L - w) e^{depth/T}; and the wall, well and all, is pressed with P = n T of the gas."""
-    count, depth, temperature, width, side = 500, 1.5, 1.0, 0.25, 3.0
-    scene = gp.Scene(
-        gp.Container((side, side, side), ("wall", "periodic", "periodic")),
-        [gp.Species(count, 1e-4, temperature=temperature)],
-        faces={"x_low": gp.Well(depth, width, temperature), "x_high": gp.Thermal(temperature)},
-    )
-    sim = gp.Simulation(scene, gp.EventDriven(), seed=11)
-    sim.advance(duration=30.0)
-    sim.reset_tally()
-    shares = []
-    for _ in range(25):
-        sim.advance(duration=15.0)
-        shares.append(np.mean(sim.state.well_energies < 0.0))
-    ratio = width / (side - 2e-4 - width) * math.exp(depth / temperature)
-    share = ratio / (1.0 + ratio)
-    sigma = math.sqrt(share * (1.0 - share) / (count * len(shares)))
-    assert np.std(shares, ddof=1) == pytest.approx(sigma * 5.0, rel=0.5)  # samples are independent
-    assert np.mean(shares) == pytest.approx(share, abs=3 * sigma)
-    density = count * (1.0 - share) / (side**2 * (side - 2e-4 - width))
-    pressures = sim.tally.wall_impulse[:2] / (sim.tally.time * side**2)
-    assert pressures == pytest.approx([density * temperature] * 2, rel=0.015)
 
 
 @pytest.mark.interpreted
@@ -127,10 +96,7 @@ def test_a_stuck_particle_is_set_free_with_all_its_energy(search, speed, held):
     ("change", "key"),
     [
         ({"faces": {"x_low": {"kind": "well", "depth": 1.0, "width": 8.0}}}, "faces.x_low.width"),
-        ({"faces": {"x_low": {"kind": "well", "depth": -1.0, "width": 1.0}}}, "faces.x_low.depth"),
-        ({"faces": {"y_low": {"kind": "well", "depth": 1.0, "width": 1.0}}}, "faces.y_low"),
         ({"faces": {"y_low": {"kind": "sticky", "momentum": 1.0}}}, "faces.y_low"),
-        ({"faces": {"x_low": {"kind": "sticky", "momentum": 0.0}}}, "faces.x_low.momentum"),
         ({"faces": {"x_low": {"kind": "well", "depth": 1.0}}}, "faces.x_low.width"),
     ],
 )

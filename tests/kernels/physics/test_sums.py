@@ -184,13 +184,6 @@ def test_a_tally_is_the_sum_of_its_parts(scene):
     check_sums(scene, gp.EventDriven(), 300, 1e-15, max_events=1000)
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("scene", list(scenes()))
-def test_a_long_tally_is_the_sum_of_its_parts(scene):
-    """1e8 events."""
-    check_sums(scene, gp.EventDriven(), 1000, 1e-15, max_events=100_000)
-
-
 @kernel
 def exact_terms(start, factor, number):
     """The sum of the terms of `add_many`, times 2^33."""

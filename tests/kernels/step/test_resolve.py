@@ -91,9 +91,8 @@ def test_impulses_and_times_are_those_of_the_one_contact(seed, real):
     assert root == entered < 0.0
     parting = times(rr, -rv, vv, ss)[1]  # the other root: the time since the pair touched
     assert parting < 0.0
-    assert rr - 2 * rv * parting + vv * parting**2 == pytest.approx(
-        ss, rel=1e-4 if real is np.float32 else 1e-12
-    )
+    rounding = 1e-4 if real is np.float32 else 1e-12
+    assert rr - 2 * rv * parting + vv * parting**2 == pytest.approx(ss, rel=rounding)
 
 
 def test_a_fixed_particle_takes_no_velocity_and_gives_all_of_the_impulse():

@@ -48,17 +48,8 @@ def test_which_particles_are_near_is_exact_to_the_bit(d, real):
     positions[...] = rng.integers(0, 9, (d, 40)) / 8  # on a grid: many are just as far as a contact
     radii[...] = rng.integers(1, 3, 40) / 16
     none = np.empty(0, np.uint32)
-    particles = StepParticles(
-        positions,
-        positions,
-        none,
-        radii,
-        index=none,
-        masses=radii,
-        last_pass=none,
-        bounds=np.zeros(2),
-        ordinary=40,
-    )
+    rest = {"index": none, "masses": radii, "last_pass": none, "bounds": np.zeros(2), "ordinary": 40}
+    particles = StepParticles(positions, positions, none, radii, **rest)
     space = Space((real(1.25),) * d, (True, False, True)[:d], real(1.0))
     total = 0
     for skin in (real(0.0), real(0.125)):
@@ -66,9 +57,8 @@ def test_which_particles_are_near_is_exact_to_the_bit(d, real):
             for first in range(40):
                 found = marked(near_eight(particles, slot, space, skin, first))
                 there = range(min(8, 40 - first))
-                assert [n for n in found if n in there] == [
-                    n for n in there if near_one(particles, slot, space, skin, first + n)
-                ]
+                alone = [n for n in there if near_one(particles, slot, space, skin, first + n)]
+                assert [n for n in found if n in there] == alone
                 total += len(found)
     assert 1000 < total < 15000
 
