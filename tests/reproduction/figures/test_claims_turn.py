@@ -1,11 +1,11 @@
-"""Each claim of each figure turns if a number of its data set moves."""
+"""The claims of each figure: what they are in its small data set, and that each turns if a number moves."""
 
 import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from reproduction.figures.stored_data import FOLDER, parts, stored
+from reproduction.figures.stored_data import FOLDER, judged, parts, stored, stored_claims
 
 from gaspart.reproduction.claims import judge
 from gaspart.reproduction.registry import families
@@ -103,6 +103,15 @@ def test_each_claim_turns_when_a_number_moves(figure):
             after = state(figure, other)
             left -= {text for text in left & after.keys() if has_turned(before[text], after[text])}
     assert left <= STAYING
+
+
+@pytest.mark.parametrize("figure", families())
+def test_the_claims_of_the_stored_data_are_what_they_were(figure):
+    """Other code must not change them unnoticed; `stored_data.py` stores what is meant to change."""
+    found, before = judged(figure, stored(figure)), stored_claims(figure)
+    assert {text: one[-1] for text, one in found.items()} == {text: one[-1] for text, one in before.items()}
+    for text, (*numbers, _) in found.items():
+        assert numbers == pytest.approx(before[text][:-1], rel=1e-5, abs=1e-9, nan_ok=True), text
 
 
 def test_each_figure_has_its_data_set():
