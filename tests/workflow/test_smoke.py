@@ -4,9 +4,12 @@ import csv
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from browser import CHROMIUM, found_by
 from digests import digests, known
+from reproduction.figures.stored_data import stored
 
 from gaspart.reproduction import job_time
 from gaspart.reproduction.claims import CLAIM_KINDS, VERDICTS
@@ -50,6 +53,39 @@ def test_every_figure_is_drawn_twice_and_has_a_claim_with_a_verdict(smoke):
         assert claim["kind"] in CLAIM_KINDS
         assert claim["why"] or claim["verdict"] in ("agrees", "reproduced", "disagrees")
         assert claim["fails_if"]
+
+
+UNTIMED = {"simulate", "fill", "pack", "echo"}
+"""Kinds of jobs of which nothing depends on the speed of the machine."""
+
+
+def test_the_measured_numbers_are_those_of_the_stored_data(smoke):
+    """Where measuring is meant to change, `stored_data.py` stores the data sets anew."""
+    experiments, wrong, compared = smoke.config["experiments"], [], 0
+    for figure in smoke.figures:
+        names = smoke.config["figures"][figure]["experiments"]
+        if not names or {experiments[name].get("job", "simulate") for name in names} - UNTIMED:
+            continue
+        compared += 1
+        with xr.open_dataset(smoke.path / f"results/smoke/measurements/{figure}.nc") as found:
+            wrong += [(figure, name) for name in other_numbers(stored(figure), found)]
+    assert compared and not wrong
+
+
+def other_numbers(right, found):
+    """The variables of a data set that are not in another, or differ by more than rounding."""
+    names = set(right.variables) & set(found.variables)
+    for name in names:
+        one, other = right[name].values, found[name].values
+        if one.dtype.kind not in "fiub":
+            same = one.shape == other.shape and (one == other).all()
+        else:
+            one, other = one.astype(float), other.astype(float)
+            size = np.abs(one[np.isfinite(one)]).max(initial=0.0)
+            same = one.shape == other.shape and np.allclose(one, other, 1e-5, 1e-7 * size, equal_nan=True)
+        if not same:
+            yield name
+    yield from set(right.variables) ^ set(found.variables)
 
 
 def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, monkeypatch):
