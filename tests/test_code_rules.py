@@ -1,6 +1,9 @@
 """The size of functions, for which ruff has no rule: it counts statements, not lines."""
 
 import ast
+import builtins
+import dis
+import re
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "src" / "gaspart"
@@ -33,3 +36,32 @@ def test_the_limit_is_noticed_and_counts_no_docstring():
 def test_functions_are_short():
     texts = {path: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
     assert {path: names for path, text in texts.items() if (names := long_functions(text))} == {}
+
+
+BY_SNAKEMAKE = {"config", "local", "report", "workflow"}
+"""Names that Snakemake gives to the files of a workflow."""
+
+
+def global_names(code):
+    """The global names that a function reads, with the functions inside it."""
+    inner = [one for one in code.co_consts if hasattr(one, "co_code")]
+    read = {i.argval for i in dis.get_instructions(code) if i.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
+    return read.union(*map(global_names, inner)) - {code.co_name}
+
+
+def test_functions_of_the_workflow_read_names_that_exist():
+    """No linter reads them, and some run on a cluster only."""
+    workflow = PACKAGE.parents[1] / "workflow"
+    files = [*sorted(workflow.glob("rules/*.smk")), workflow / "Snakefile"]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    known = {*dir(builtins), *BY_SNAKEMAKE, *re.findall(r"^def (\w+)", text, re.M)}
+    for line in re.findall(r"^ *(?:from [\w.]+ )?import (.+)", text, re.M):
+        known |= {name.split(" as ")[-1].strip() for name in line.split(",")}
+    for targets in re.findall(r"^(\w+(?:, \w+)*) = ", text, re.M):
+        known |= set(targets.split(", "))
+    functions = re.findall(r"^def .+\n(?:(?: .*)?\n)+", text, re.M)
+    assert len(functions) > 20
+    for function in functions:
+        for code in compile(function, "workflow", "exec").co_consts:
+            if hasattr(code, "co_code"):
+                assert global_names(code) <= known, (code.co_name, global_names(code) - known)

@@ -187,6 +187,8 @@ def memory_of(wildcards):
 
 def runtime_of(wildcards, attempt):
     """Minutes for one point on a cluster: five times the predicted time, more at each attempt."""
+    from gaspart.reproduction.cost import predicted_seconds
+
     seconds = None if workflow.local_exec else predicted_seconds(point_of(wildcards))
     return attempt * (120 if seconds is None else max(10, round(5.0 * seconds / 60.0)))
 
