@@ -38,7 +38,7 @@ def test_functions_are_short():
     assert {path: names for path, text in texts.items() if (names := long_functions(text))} == {}
 
 
-BY_SNAKEMAKE = {"config", "local", "report", "workflow"}
+BY_SNAKEMAKE = {"config", "expand", "local", "report", "storage", "workflow"}
 """Names that Snakemake gives to the files of a workflow."""
 
 
@@ -57,7 +57,7 @@ def test_functions_of_the_workflow_read_names_that_exist():
     known = {*dir(builtins), *BY_SNAKEMAKE, *re.findall(r"^def (\w+)", text, re.M)}
     for line in re.findall(r"^ *(?:from [\w.]+ )?import (.+)", text, re.M):
         known |= {name.split(" as ")[-1].strip() for name in line.split(",")}
-    for targets in re.findall(r"^(\w+(?:, \w+)*) = ", text, re.M):
+    for targets in re.findall(r"^ *(\w+(?:, \w+)*) = ", text, re.M):
         known |= set(targets.split(", "))
     functions = re.findall(r"^def .+\n(?:(?: .*)?\n)+", text, re.M)
     assert len(functions) > 20
