@@ -230,7 +230,7 @@ def refused(capsys, project, *options):
 
 
 @pytest.mark.thorough
-def test_another_clone_starts_from_a_deposit(project, tmp_path, capsys):
+def test_another_clone_starts_from_a_deposit(project, tmp_path, capsys, monkeypatch):
     """Timings have the same bits: they are copied, and not made."""
     deposit = tmp_path / "deposit.zip"
     assert main(["archive", str(project / "results/smoke"), "-o", str(deposit), "--trajectories"]) == 0
@@ -247,6 +247,11 @@ def test_another_clone_starts_from_a_deposit(project, tmp_path, capsys):
     told = capsys.readouterr().err
     restore()
     assert re.search(r"^deposit.zip: \d+ points are used.*; \d+ are made, as it has none of", told)
+    with monkeypatch.context() as other:
+        other.setattr("gaspart.trajectory.provenance.versions", lambda: {"gaspart_version": "9.0"})
+        assert start(deposit, config) == 0
+    told = capsys.readouterr().err
+    assert re.search(r"points are used, made by gaspart \S+ \(this is 9.0\)\n$", told)
     assert start(deposit, config) == 0
     assert re.fullmatch(r"deposit.zip: \d+ points are used\n", capsys.readouterr().err)
     claims = [f"results/smoke/claims/{figure}.csv" for figure in ("virial_discs", "ideal_boxes")]
