@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -104,7 +104,7 @@ def options(kind, scene, engine, interval):
     return found
 
 
-@cache
+@lru_cache(maxsize=8)  # all of the table take several GB
 def recorded(name, engine_name="event", seed=SEED, longer=1.0, finer=1):
     """Return the trajectory of a run, in memory.
 
