@@ -104,7 +104,7 @@ def options(kind, scene, engine, interval):
     return found
 
 
-@lru_cache(maxsize=8)  # all of the table take several GB
+@lru_cache(maxsize=32)  # all of the table take several GB
 def recorded(name, engine_name="event", seed=SEED, longer=1.0, finer=1):
     """Return the trajectory of a run, in memory.
 
