@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.made import simulated
 from scipy.spatial import cKDTree
 from scipy.special import gammaln
 
@@ -13,14 +12,6 @@ from gaspart.reproduction.figures import adsorption
 from gaspart.reproduction.figures.adsorption import Wall, well_ratio
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.tables import packing_fraction_at
-
-
-def test_the_ratio_is_that_of_two_boltzmann_integrals():
-    """The density along the normal is e^depth within the well and 1 outside."""
-    x = (np.arange(30000) + 0.5) * 1e-4
-    density = np.where(x < 0.5, np.exp(1.3), 1.0)
-    expected = density[x < 0.5].sum() / density[x > 0.5].sum()
-    assert well_ratio(1.3, 0.5, 2.5) == pytest.approx(expected, rel=1e-12)
 
 
 def test_two_spheres_leave_a_well_as_their_configurations_do():
@@ -131,20 +122,6 @@ def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
     held, free, far, slow, flux = adsorption.counts(Wall(point("sticky")), height, velocity, SETTINGS)
     assert (held, free, far) == (1.0, 3.0, 1.0)
     assert slow == flux.sum() == flux[2] == 0.5  # one leaves, with 0.5
-
-
-@pytest.mark.thorough
-def test_a_real_well_holds_as_many_as_it_must(tmp_path):
-    one = simulated(point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0}))
-    dataset = adsorption.measure([one], SETTINGS).isel(point=0)
-    expected = well_ratio(1.0, 0.2, 1.975 - 0.2)
-    error = float(dataset["log_ratio_error"])
-    assert 0.005 < error < 0.04
-    assert np.log(float(dataset["ratio"]) / expected) == pytest.approx(0.0, abs=4.0 * error)
-    # A little more than counted, since spheres close room to each other, most where they are dense.
-    assert 1.0001 < float(dataset["length"]) / (0.2 * float(dataset["ratio"]) / expected) < 1.001
-    with pytest.raises(ValueError, match="blocks: 31"):
-        adsorption.measure([one], SETTINGS | {"blocks": 31})
 
 
 def test_the_coverage_of_a_layer_is_compared_with_that_of_discs():
