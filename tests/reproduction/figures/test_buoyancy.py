@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -105,16 +103,3 @@ def test_a_free_disc_is_lifted_by_what_it_displaces(points, runs):
     # Theory knows of the gas, thin as it is: a disc of mass 0.5 displaces 1.4 at the floor, and rises.
     assert row["expected"] > bare + 1.0
     assert row["expected_spread"] == pytest.approx(row["spread"][0], rel=0.1)
-
-
-def test_the_source_s_discs_are_apart_from_those_in_the_fluid_of_the_fixed_ones(points, runs):
-    rng = np.random.default_rng(3)
-    place = np.tile([12.0, 20.0], (20, 1))
-    runs += [stretch(dilute_fluid(rng, 20, COUNT, place), 1.0 + n) for n in range(8)]
-    own = replace(points[1], experiment="column_source", name="own")
-    ds = buoyancy.measure([*points, own], SETTINGS)
-    assert dict(ds.sizes) == {"fixed": 1, "free": 1, "source": 1, "height": 201}
-    assert float(ds["source_density"][0]) == pytest.approx(0.5 / (np.pi * RADIUS**2))
-    assert float(ds["source_highest"][0]) == HEIGHT - (RADIUS - SMALL)
-    assert ds.attrs["source_density"] == 0.2
-    assert "source" not in buoyancy.measure(points, SETTINGS).sizes

@@ -1,4 +1,4 @@
-"""Displacements and velocity autocorrelations of made-up trajectories, and of real gases."""
+"""Displacements and velocity autocorrelations of made-up trajectories."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.made import simulated
 from scenes import centred
 
 from gaspart import theory
@@ -100,36 +99,6 @@ def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
     assert bool(ds["largest"]) and not bool(ds["in_series"])
 
 
-def test_short_runs_compare_green_and_kubo_with_einstein(stored):
-    one = point(experiment="short", collisions_per_particle=60, samples=240)
-    fill(stored, one, seed=5)
-    ds = msd_spheres.measure([one], {}).isel(point=0)
-    assert np.isnan(ds["diffusion"])
-    assert float(ds["interval"]) == pytest.approx(0.25, rel=0.02)
-    assert abs(float(ds["integral_difference"])) < max(4 * float(ds["integral_difference_error"]), 0.01)
-    late = ds["time"] * ds["collision_rate"] > 12.0
-    integral = ds["integral"].where(late).mean()
-    assert float(integral) == pytest.approx(float(theory.enskog_diffusion(0.02, 3)), rel=0.1)
-
-
-def test_sizes_at_one_packing_fraction_make_a_series(stored):
-    chosen = [point(count=count, name=f"count={count}", packing_fraction=0.3) for count in (32, 48, 64)]
-    chosen.append(point(count=32, packing_fraction=0.05))
-    for seed, one in enumerate(chosen):
-        fill(stored, one, seed=seed)
-    ds = msd_spheres.measure(chosen, {})
-    assert ds["in_series"].values.tolist() == [True, True, True, False]
-    assert ds["largest"].values.tolist() == [False, False, True, True]
-    # Langevin particles do not feel each other: no slope, and Enskog's D in every container.
-    assert abs(float(ds["size_slope"])) < 4 * float(ds["size_slope_error"])
-    enskog = float(theory.enskog_diffusion(0.3, 3))
-    assert abs(float(ds["size_intercept"]) - enskog) < 4 * float(ds["size_intercept_error"])
-    side = ds["side"].values
-    carried = float(theory.number_density(0.3, 3)) * float(ds["diffusion"][0])
-    expected = theory.yeh_hummer(side[0], float(theory.enskog_viscosity(0.3, 3)) + carried)
-    assert float(ds["correction"][0]) == pytest.approx(float(expected))
-
-
 def test_the_slope_against_the_logarithm_is_found(monkeypatch):
     """D(t) = a + b ln t, less what zero total momentum takes away."""
     one = point(dimension=2, count=4096, packing_fraction=0.3)
@@ -164,23 +133,6 @@ def test_runs_that_cannot_tell_are_refused(stored, change, key):
     fill(stored, one, seed=6)
     with pytest.raises(SceneError, match=key):
         msd_spheres.measure([one], {})
-
-
-def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
-    settings = {
-        "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
-        "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
-        "samples": 240, "lags": 120, "replicas": 3,
-    }  # fmt: skip
-    point = simulated(Point("memory", "single", "simulate", settings, str(tmp_path), 3))
-    fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
-    ds = velocity_autocorrelation.measure([point], fitted).isel(point=0)
-    assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1
-    assert ds["correlation"][0].item() == pytest.approx(1.0, rel=1e-12)  # (1 - 1/N) + 1/N
-    assert ds["collisions"][1].item() == pytest.approx(0.05, rel=0.1)
-    assert np.isnan(ds["tail_ratio"].item())
-    ds = velocity_autocorrelation.measure([point], fitted | {"start_to": 0.1}).isel(point=0)
-    assert np.isnan(ds["start_rate"].item()) and np.isfinite(ds["tail_ratio"].item())
 
 
 def test_the_initial_rate_is_that_of_the_logarithm():
