@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.claims.data import judged
 from scenes import gas
 
 from gaspart.errors import SceneError
-from gaspart.reproduction.figures.densest_fill import claims, contacts, measure
-from gaspart.reproduction.jobs.pack import GROWTH, arguments, pack
+from gaspart.reproduction.figures.densest_fill import contacts
+from gaspart.reproduction.jobs.pack import arguments, pack
 from gaspart.reproduction.points.point import Point
 
 
@@ -31,28 +29,6 @@ def crystal(cells):
     basis = np.array([[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]]) / 2
     corners = np.stack(np.meshgrid(*[np.arange(cells)] * 3), axis=-1).reshape(-1, 1, 3)
     return (corners + basis).reshape(-1, 3)
-
-
-def test_ordered_packings_grown_slowly_contradict_the_bound_of_random_ones(tmp_path):
-    settings = {"dimension": 3, "count": 32, "boundary": "periodic", "arrangement": "compressed"}
-    settings |= {"replicas": 2, "radius": 0.5, "packing_fraction": 0.6}
-    rates = {"fast": {}, "slow": {"growth_rate": GROWTH / 32}, "loose": {"growth_rate": GROWTH / 64}}
-    points = [Point("slow", name, "pack", settings | own, str(tmp_path), 1) for name, own in rates.items()]
-    for point, radius in zip(points, (0.34, 0.3535, 0.336), strict=True):
-        fraction = 32 * 4 / 3 * math.pi * radius**3 / 8
-        centres = np.stack([crystal(2)] * 2)
-        Path(point.path).parent.mkdir(parents=True, exist_ok=True)
-        xr.Dataset(
-            {
-                "position": (("replica", "particle", "axis"), centres),
-                "radius": ("replica", [radius, radius]),
-                "packing_fraction": ("replica", [fraction, 0.6]),
-                "length": ("axis", [2.0] * 3),
-            }
-        ).to_netcdf(point.path)
-    found = judged(list(claims(measure(points, {}))))
-    slow = {claim: verdict for claim, verdict in found.items() if "densest of 2" in claim}
-    assert [verdict for _, verdict in sorted(slow.items())] == ["agrees", "disagrees"]
 
 
 def test_packings_by_insertion_and_by_growth():

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.claims.data import judged
 
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.figures import (
@@ -227,15 +226,3 @@ def test_plateaus(dataset):
     cost = PARTICLE + TEST * 13.5 / number + BOX * number
     assert float(plateau.plateau_penalty) == pytest.approx(cost / least, abs=0.03)
     assert (ds.plateau_penalty >= 1.0).all() and (ds.plateau_penalty_error < 0.03).all()
-
-
-@pytest.mark.parametrize("figure", FIGURES)
-def test_tests_and_identities_hold_on_a_known_machine(figure, dataset):
-    claims = list(FIGURES[figure].claims(dataset(figure)))
-    verdicts = zip(claims, judged(claims).values(), strict=True)
-    assert not [claim.claim for claim, at in verdicts if claim.kind != "reproduction" and at == "disagrees"]
-
-
-def test_no_minimum_is_no_pass(dataset):
-    found = judged(list(ideal_boxes.claims(dataset("ideal_boxes"))))
-    assert found["ideal number of boxes per particle, N = 1200000, r = 0.1"] == "inconclusive"

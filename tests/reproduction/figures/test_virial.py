@@ -48,13 +48,6 @@ def test_exact_data_give_the_exact_coefficients(dimension):
     assert np.all(held_error >= 0.0) and np.all(held_error < fit.errors * 10)
 
 
-def test_a_cut_series_is_biased():
-    z = theory.compressibility_factor(ETA, 2)
-    fit, held_error = fit_coefficients(ETA, Estimate(z, 1e-4 * (z - 1.0)), 2, free=4, held=False)
-    assert fit.values[2] > 1.3 * theory.virial_coefficients(2, 4)[0][3]  # B4 takes up what was cut
-    assert not held_error.any()
-
-
 def test_choices_with_too_few_points_are_left_out():
     dataset = equation_of_state(2).drop_dims(["fit", "order"])
     few = dataset.isel(packing_fraction=slice(0, 4))
