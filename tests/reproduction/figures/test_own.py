@@ -196,8 +196,6 @@ def test_an_observable_with_names_has_a_series_for_each(simulated, monkeypatch):
             "claims.0.value",
             "has no meaning",
         ),
-        ({"claims": [{"that": "theory", "required": 0.1}]}, "claims.0.fails_if", "is required"),
-        ({"colour": "red"}, "colour", "unknown key"),
         (
             {"claims": [{**SETTINGS["claims"][2], "between": [0.2, 0.4]}]},
             "claims.0.between",
