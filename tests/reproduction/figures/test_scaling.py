@@ -1,7 +1,5 @@
 """Jobs of a machine whose every cost is known, for the tests of the scaling figures."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
@@ -11,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from gaspart.reproduction.claims import judge
 from gaspart.reproduction.config import merged_with_default
 from gaspart.reproduction.figures import (
     box_count,
@@ -226,3 +225,11 @@ def test_plateaus(dataset):
     cost = PARTICLE + TEST * 13.5 / number + BOX * number
     assert float(plateau.plateau_penalty) == pytest.approx(cost / least, abs=0.03)
     assert (ds.plateau_penalty >= 1.0).all() and (ds.plateau_penalty_error < 0.03).all()
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_tests_and_identities_hold_on_a_known_machine(figure, dataset):
+    """Exponents too, which the small data sets do not have."""
+    claims = list(FIGURES[figure].claims(dataset(figure)))
+    verdicts = zip(claims, judge(claims), strict=True)
+    assert not [claim.claim for claim, at in verdicts if claim.kind != "reproduction" and at == "disagrees"]
