@@ -1,52 +1,12 @@
 """Made-up fills with known answers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from gaspart import theory
 from gaspart.reproduction.figures.fill_failures import (
     Fill,
-    approach_exponent,
     failures_by_density,
-    saturation,
 )
-
-
-def fill_to(saturation, amplitude, dimension, particle=1e-4, last_time=5e3, replicas=6, seed=3):
-    """Fills whose packing fraction is saturation - amplitude t^(-1/dimension), to a particle, from t = 1 on.
-
-    Each replica's saturation is shifted by a little noise.
-    """
-    rng = np.random.default_rng(seed)
-    ends = saturation + 2e-4 * rng.standard_normal(replicas)
-    particles = int((saturation + 0.01) / particle)
-    failures = np.full((replicas, particles), -1)
-    for row, end in zip(failures, ends, strict=True):
-        eta = particle * (np.arange(particles) + 1.0)
-        gap = end - eta
-        times = np.where(gap > 0.0, (np.maximum(gap, 1e-30) / amplitude) ** -float(dimension), np.inf)
-        placed = np.flatnonzero(times <= last_time)
-        attempts = np.maximum.accumulate(np.maximum(np.round(times[placed] / particle), placed + 1)).astype(
-            int
-        )
-        row[placed] = np.maximum(np.diff(attempts, prepend=0) - 1, 0)
-    return Fill(failures, np.full(replicas, int(last_time / particle)), particle, dimension)
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_a_straight_approach_leads_to_its_end(dimension):
-    value, error, slope = saturation(fill_to(0.4, 0.2, dimension), window=10.0)
-    assert abs(value - 0.4) < 4.0 * error + 1e-4
-    assert 2e-5 < error < 4e-4
-    assert slope == pytest.approx(-0.2, rel=0.02)
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_the_exponent_of_the_approach(dimension):
-    value, error = approach_exponent(fill_to(theory.RSA_SATURATION[dimension], 0.2, dimension), window=10.0)
-    assert value == pytest.approx(1.0 / dimension, abs=4.0 * error + 0.01)
 
 
 def test_attempts_that_found_no_place_count_where_they_were_made():

@@ -1,14 +1,10 @@
 """The thermodynamics of a known equation of state."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from gaspart import theory
-from gaspart.analysis.estimate import Estimate
 from gaspart.analysis.statistics import fit_polynomial
-from gaspart.reproduction.figures import chemical_potential
 from gaspart.reproduction.figures.chemical_potential import STATE_POWERS, MeasuredState
 
 
@@ -29,18 +25,3 @@ def test_the_thermodynamics_of_a_known_equation_of_state(dimension):
     assert state.free_energy(at).value == pytest.approx(free, rel=1e-4)
     assert state.chemical_potential(at).value == pytest.approx(free + z(at) - 1.0, rel=1e-4)
     assert 0.0 < state.chemical_potential(at).error < 1e-4
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_the_configuration_integral_of_a_known_chemical_potential(dimension):
-    eta = np.array([0.1, 0.2, 0.3, 0.4])
-    inserted = Estimate(theory.excess_chemical_potential(eta, dimension), 0.01, 20.0)
-    fit_eta = np.linspace(0.05, 0.45, 9)
-    state = MeasuredState(
-        dimension, fit_polynomial(fit_eta, 0.0 * fit_eta, np.full(9, 1e-6), powers=STATE_POWERS)
-    )
-    found = chemical_potential.ln_q(eta, inserted, dimension)
-    free = theory.excess_free_energy(eta, dimension)
-    assert found.value == pytest.approx(free, rel=1e-6)
-    assert [state.free_energy(one).value for one in eta] == pytest.approx(free, rel=1e-6)
-    assert (found.error > 0.0).all() and (found.error < 0.05).all()
