@@ -1,7 +1,5 @@
 """Piles, flows and vibrated beds: what is read of small ones, and of frames that are known exactly."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

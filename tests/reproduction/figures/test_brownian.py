@@ -1,7 +1,5 @@
 """The large particle's numbers, from made-up paths whose friction and diffusion are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

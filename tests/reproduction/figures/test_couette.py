@@ -1,7 +1,5 @@
 """An exact flow between sliding walls."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from gaspart import theory

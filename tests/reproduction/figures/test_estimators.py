@@ -1,7 +1,5 @@
 """Blocks of counts and impulses of a short run."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Slits with known answers: insertion, and the period of the pressure."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

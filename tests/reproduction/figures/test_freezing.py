@@ -1,7 +1,5 @@
 """What a drift adds to an uncertainty."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

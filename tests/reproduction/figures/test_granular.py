@@ -1,7 +1,5 @@
 """Inelastic and driven gases: what is read of frames that are known exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Columns under gravity: made-up stretches with known answers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

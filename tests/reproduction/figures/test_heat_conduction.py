@@ -1,7 +1,5 @@
 """Heat between walls: what short runs conserve, and blocks and profiles with known answers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures that a config states by itself, from the config to the picture."""
 
-from __future__ import annotations
-
 import copy
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What is read of a gas behind a piston, exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from reproduction.made import made

@@ -1,7 +1,5 @@
 """Particles that no other has hit, groups that share their scatter, and what speeds are refused for."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

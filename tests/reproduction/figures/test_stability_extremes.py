@@ -1,7 +1,5 @@
 """Extreme scenes: every row of the table passes, or is refused with one line, in every engine."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

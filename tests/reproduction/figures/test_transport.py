@@ -1,7 +1,5 @@
 """The bounds within which theory of transport is claimed, and the fit of the transfer at collisions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

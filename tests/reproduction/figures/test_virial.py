@@ -1,7 +1,5 @@
 """Fits of virial coefficients to made-up equations of state."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Pressure on walls from a made-up trajectory, exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr
