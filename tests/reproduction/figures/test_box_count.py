@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from gaspart import theory
 from gaspart.reproduction.figures import box_count as partition
-from gaspart.reproduction.figures.radius_grid import crossings_per_collision, expected_pair_tests
 
 
 def neighbours(positions, per_side, side):
@@ -62,16 +60,3 @@ def test_share_of_contacts_in_a_box(dimension, width):
     share = ((others >= 0.0) & (others < width)).all(axis=1).mean()
     expected = partition.share_of_contacts_in_a_box(width, 1.0, dimension)
     assert share == pytest.approx(expected, abs=4.0 * np.sqrt(expected / 20000))
-
-
-def test_pair_tests_of_one_box_are_all_pairs_and_those_of_an_ideal_gas_27_boxes():
-    for per_side in (1, 2, 3):
-        assert expected_pair_tests(100, per_side, 0.2, 3) == pytest.approx(49.5)
-    assert expected_pair_tests(8000, 20, 1e-9, 3) == pytest.approx(0.5 * 27 * (1 - 1 / 8000), rel=1e-3)
-
-
-def test_crossings_fall_with_the_box_and_with_density():
-    one = crossings_per_collision(0.1, 2.0, 1000, 3)
-    assert crossings_per_collision(0.1, 4.0, 1000, 3) == pytest.approx(one / 2)
-    # mean free path / (sqrt 2) ... : 2 d <|v_x|> / (w nu) with <|v_x|> = <v> / 2 in 3D
-    assert one == pytest.approx(3.0 * float(theory.mean_free_path(0.1, 3)) / 2.0, rel=2e-3)
