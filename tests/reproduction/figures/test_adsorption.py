@@ -4,23 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from reproduction.made import simulated
 from scipy.spatial import cKDTree
 from scipy.special import gammaln
 
 import gaspart as gp
 from gaspart.reproduction.figures import adsorption
-from gaspart.reproduction.figures.adsorption import Wall, well_ratio
 from gaspart.reproduction.points.point import Point
 from gaspart.theory.tables import packing_fraction_at
-
-
-def test_the_ratio_is_that_of_two_boltzmann_integrals():
-    """The density along the normal is e^depth within the well and 1 outside."""
-    x = (np.arange(30000) + 0.5) * 1e-4
-    density = np.where(x < 0.5, np.exp(1.3), 1.0)
-    expected = density[x < 0.5].sum() / density[x > 0.5].sum()
-    assert well_ratio(1.3, 0.5, 2.5) == pytest.approx(expected, rel=1e-12)
 
 
 def test_two_spheres_leave_a_well_as_their_configurations_do():
@@ -52,12 +42,6 @@ def test_scaled_particle_theory_is_exact_to_the_second_order_and_near_the_refere
 def test_a_single_sphere_in_front_of_a_layer_closes_half_a_ball():
     assert adsorption.excluded_in_front(0.0, 1e-9) == pytest.approx(2.0 * np.pi / 3.0)
     assert adsorption.layer_activity(2.0, 0.0, 0.01, 1e-9) == pytest.approx(2.0)
-    # Half of the lens that the balls of two neighbours share, at r = 1 to 2, is closed once (exact).
-    r = np.linspace(1.0, 2.0, 2001)
-    lens = np.trapezoid(np.pi / 24.0 * (4.0 + r) * (2.0 - r) ** 2 * 2.0 * np.pi * r, r)
-    step = 1e-4
-    slope = (adsorption.excluded_in_front(step, 1e-9) - 2.0 * np.pi / 3.0) / (4.0 / np.pi * step)
-    assert slope == pytest.approx(-lens, rel=0.08)  # scaled-particle theory is approximate here
 
 
 def test_the_room_that_discs_close_is_that_in_front_of_simulated_ones():
@@ -100,59 +84,29 @@ def test_a_small_gas_leaves_the_layer_more(particles, ratio):
     assert adsorption.excess_of_few(activity, large, gas) == pytest.approx(canonical / large - 1.0, rel=0.1)
 
 
-SCENES = Path(__file__).parents[3] / "config/scenes"
 SETTINGS = {"blocks": 10, "layer_blocks": 10, "near": 0.5, "bins": 20}
 
 
-def point(name, folder="results/points", **settings):
-    settings = {"scene": str(SCENES / f"adsorption_{name}.yaml"), "duration": 60.0, "samples": 30} | settings
-    return Point("held", "single", "simulate", {"equilibration": 20.0} | settings, str(folder), 1)
-
-
-def test_an_ideal_gas_in_frames_is_counted_as_it_was_made():
-    """Independent frames of a Maxwellian gas, in the Boltzmann distribution of the well."""
-    rng = np.random.default_rng(4)
-    wall = Wall(point("ideal"))
-    odds = well_ratio(wall.depth, wall.width, wall.outside)
-    inside = rng.random((400, 500)) < odds / (1.0 + odds)
-    where = rng.random(inside.shape)
-    height = np.where(inside, where * wall.width, wall.width + where * wall.outside)
-    held, free, far, slow, flux = adsorption.counts(wall, height, rng.standard_normal(inside.shape), SETTINGS)
-    error = np.sqrt((1.0 + odds) ** 2 / (odds * inside.size))  # of ln(held / free)
-    assert np.log(held / free / odds) == pytest.approx(0.0, abs=4.0 * error)
-    assert far / free == pytest.approx(1.0 - 0.05 / wall.outside, abs=0.001)
-    assert slow / flux.sum() == pytest.approx(adsorption.slow_flux_share(1.0), abs=0.01)
-    expected = adsorption.flux_density(np.linspace(0.1, 3.9, 20))
-    assert flux / (flux.sum() * 0.2) == pytest.approx(expected, abs=0.03)
+def wall(name):
+    """The wall of a scene of the config."""
+    scene = Path(__file__).parents[3] / f"config/scenes/adsorption_{name}.yaml"
+    settings = {"scene": str(scene), "duration": 60.0, "samples": 30, "equilibration": 20.0}
+    return adsorption.Wall(Point("held", "single", "simulate", settings, "results/points", 1))
 
 
 def test_only_particles_without_a_velocity_along_the_normal_are_stuck():
     height, velocity = np.array([[0.0, 0.1, 0.2, 5.0]]), np.array([[0.0, 0.5, -0.5, 2.0]])
-    held, free, far, slow, flux = adsorption.counts(Wall(point("sticky")), height, velocity, SETTINGS)
+    held, free, far, slow, flux = adsorption.counts(wall("sticky"), height, velocity, SETTINGS)
     assert (held, free, far) == (1.0, 3.0, 1.0)
     assert slow == flux.sum() == flux[2] == 0.5  # one leaves, with 0.5
 
 
-@pytest.mark.thorough
-def test_a_real_well_holds_as_many_as_it_must(tmp_path):
-    one = simulated(point("ideal", tmp_path, **{"scene.faces.x_low.depth": 1.0}))
-    dataset = adsorption.measure([one], SETTINGS).isel(point=0)
-    expected = well_ratio(1.0, 0.2, 1.975 - 0.2)
-    error = float(dataset["log_ratio_error"])
-    assert 0.005 < error < 0.04
-    assert np.log(float(dataset["ratio"]) / expected) == pytest.approx(0.0, abs=4.0 * error)
-    # A little more than counted, since spheres close room to each other, most where they are dense.
-    assert 1.0001 < float(dataset["length"]) / (0.2 * float(dataset["ratio"]) / expected) < 1.001
-    with pytest.raises(ValueError, match="blocks: 31"):
-        adsorption.measure([one], SETTINGS | {"blocks": 31})
-
-
 def test_the_coverage_of_a_layer_is_compared_with_that_of_discs():
-    wall = Wall(point("monolayer"))
-    far, held = 0.01 * (wall.outside - 2.0 * wall.sigma) * wall.area, 25.0
+    layer = wall("monolayer")
+    far, held = 0.01 * (layer.outside - 2.0 * layer.sigma) * layer.area, 25.0
     for _ in range(50):  # until the coverage is that of discs at the activity which it gives the layer
-        held /= wall.filling(held, 1e9, far)
-    assert wall.filling(held, 1e9, far) == pytest.approx(1.0)
-    plain = packing_fraction_at(wall.activity(far), 2)
-    assert 1.002 < wall.coverage(held) / plain < 1.006  # more than with the pressure alone, by first order
-    assert 1.002 < 1.0 / wall.filling(held, 40.0, far) < 1.006  # a small gas leaves the layer more
+        held /= layer.filling(held, 1e9, far)
+    assert layer.filling(held, 1e9, far) == pytest.approx(1.0)
+    plain = packing_fraction_at(layer.activity(far), 2)
+    assert 1.002 < layer.coverage(held) / plain < 1.006  # more than with the pressure alone, by first order
+    assert 1.002 < 1.0 / layer.filling(held, 40.0, far) < 1.006  # a small gas leaves the layer more

@@ -1,28 +1,25 @@
 """The large particle's numbers, from made-up paths whose friction and diffusion are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 import gaspart as gp
 from gaspart.reproduction.figures import brownian
-from gaspart.reproduction.figures.brownian import Sphere, measure_msd, measure_paths
+from gaspart.reproduction.figures.brownian import Sphere, measure_msd
 from gaspart.reproduction.points.point import Point
 
 
-def point(replicas=300, boundary="periodic", **more):
-    """A point whose scene file is replaced by `motion`'s scene in these tests."""
+def point(boundary="periodic", **more):
     settings = {
         "scene": "config/scenes/brownian_heavy.yaml", "scene.container.boundary": boundary,
         "scene.species.0.count": 900, "displacements": True, "duration": 60.0, "samples": 300,
-        "replicas": replicas,
+        "replicas": 300,
     }  # fmt: skip
     return Point("brownian_heavy", "single", "simulate", settings | more, "results/points", 1)
 
 
-def paths(motion, replicas, drift=0.0):
-    """Ornstein-Uhlenbeck paths in 3D of the container's friction, (T,), (T, 1, 3), (T, 1, 3) each."""
+def paths(motion, replicas):
+    """Ornstein-Uhlenbeck paths in 3D of the container's friction and drift, (T,), (T, 1, 3), (T, 1, 3)."""
     rng = np.random.default_rng(5)
     rest = 1.0 - motion.share
     rate, steps = motion.friction / rest, 300
@@ -31,7 +28,7 @@ def paths(motion, replicas, drift=0.0):
     keep = np.exp(-rate * interval / fine)
     v = width * rng.standard_normal((replicas, 3))
     x = np.zeros_like(v)
-    common = drift * np.sqrt(rest * motion.share * motion.temperature / motion.mass)
+    common = np.sqrt(rest * motion.share * motion.temperature / motion.mass)
     common = common * rng.standard_normal((replicas, 3))
     moved, velocities = [x], [v]
     for _ in range(steps):
@@ -47,23 +44,14 @@ def paths(motion, replicas, drift=0.0):
     return [(time, moved[:, k, None], velocities[:, k, None]) for k in range(replicas)]
 
 
-@pytest.fixture
-def made_up(monkeypatch):
-    """Let the measurement read made-up paths."""
-
-    def use(chosen, found):
-        monkeypatch.setattr(brownian, "measured_paths", lambda given: found)
-        return chosen
-
-    return use
-
-
-def test_friction_diffusion_and_equipartition_of_known_paths(made_up):
+def test_friction_diffusion_and_equipartition_of_known_paths(monkeypatch):
     """With the recoil that a finite gas gives back, and its drift, taken out."""
     chosen = point()
     motion = Sphere(chosen)
     assert motion.share == pytest.approx(0.1)
-    ds = measure_msd([made_up(chosen, paths(motion, 300, drift=1.0))], {}).isel(point=0)
+    found = paths(motion, 300)
+    monkeypatch.setattr(brownian, "measured_paths", lambda _: found)
+    ds = measure_msd([chosen], {}).isel(point=0)
     for name, expected in (
         ("equipartition", 1.0),
         ("measured_friction", motion.friction),
@@ -86,17 +74,6 @@ def test_between_walls_nothing_is_given_back():
     assert light.diffusion * light.friction == pytest.approx(1.01895)
 
 
-def test_ends_of_paths(made_up):
-    chosen = point(boundary="wall")
-    motion = Sphere(chosen)
-    found = [(t, x, v) for t, x, v in paths(motion, 200)]
-    ds = measure_paths([made_up(chosen, found)], {"paths": 3}).isel(point=0)
-    assert ds["way"].shape == (3, 301, 3) and int(ds["end_freedom"]) == 600
-    # these start in equilibrium, not at rest: farther by (30 - 1) / (30 - 1.5)
-    ratio = float(ds["end_chi_square"] / ds["end_freedom"])
-    assert ratio == pytest.approx(29.0 / 28.5, abs=4 * np.sqrt(2 / 600))
-
-
 @pytest.mark.thorough
 def test_both_engines_move_the_sources_sphere_along_one_path():
     """From one start the paths differ by rounding only, which grows about fifteenfold in 30 units of time: no
@@ -111,13 +88,12 @@ def test_both_engines_move_the_sources_sphere_along_one_path():
     assert ends[1] == pytest.approx(ends[0], abs=1e-6)
 
 
-def test_what_cannot_be_measured_is_refused(made_up):
+def test_what_cannot_be_measured_is_refused(monkeypatch):
     with pytest.raises(gp.SceneError, match="displacements"):
         measure_msd([point(displacements=False)], {})
-    short = point()
-    motion = Sphere(short)
-    found = [(t[:60], x[:60], v[:60]) for t, x, v in paths(motion, 2)]
+    short = [(np.arange(60.0), np.ones((60, 1, 3)), np.ones((60, 1, 3)))] * 2
+    monkeypatch.setattr(brownian, "measured_paths", lambda _: short)
     with pytest.raises(gp.SceneError, match="must be .* or more"):
-        measure_msd([made_up(short, found)], {})
+        measure_msd([point()], {})
     with pytest.raises(gp.SceneError, match="one entry of particles and one species"):
         Sphere(point(scene="config/scenes/brownian.yaml", **{"scene.particles": []}))

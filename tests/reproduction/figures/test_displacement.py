@@ -1,6 +1,4 @@
-"""Displacements and velocity autocorrelations of made-up trajectories, and of real gases."""
-
-from __future__ import annotations
+"""Displacements and velocity autocorrelations of made-up trajectories."""
 
 import math
 from dataclasses import replace
@@ -8,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from reproduction.made import simulated
 from scenes import centred
 
 from gaspart import theory
@@ -19,77 +16,66 @@ from gaspart.reproduction.points.point import Point
 from gaspart.trajectory.correlator import SUMS
 
 
-def point(dimension=3, count=100, packing_fraction=0.02, experiment="msd", name="single", **more):
+def point(**more):
     """One point of a grid at temperature 1; nothing of it is run."""
     settings = {
-        "dimension": dimension, "count": count, "radius": 0.5, "packing_fraction": packing_fraction,
-        "boundary": "periodic", "arrangement": "lattice", "temperature": 1.0, "engine": "event",
-        "collisions_per_particle": 120, "samples": 120, "displacements": True, "lags": 120, "replicas": 4,
+        "dimension": 3, "count": 100, "radius": 0.5, "packing_fraction": 0.02, "boundary": "periodic",
+        "arrangement": "lattice", "temperature": 1.0, "engine": "event", "collisions_per_particle": 120,
+        "samples": 120, "displacements": True, "lags": 120, "replicas": 4,
     }  # fmt: skip
-    return Point(experiment, name, "simulate", settings | more, "results/points", 1)
+    return Point("msd", "single", "simulate", settings | more, "results/points", 1)
 
 
 def langevin(rng, one, drift=0.0, length=1.0, speed=1.0):
-    """What a run of `one` accumulates of independent particles with <v(0).v(t)> / d = exp(-rate t), at
+    """What a run of `one` accumulates of 100 independent particles with <v(0).v(t)> / d = exp(-rate t), at
     Enskog's D: exact steps of the Ornstein-Uhlenbeck process.
 
     Their D is speed^2 / rate. drift: a velocity that all share; length: unit of the displacements.
     """
-    times, asked = one.schedule, one.parameters["correlations"]
-    frames, interval = times.samples + 1, times.sample_interval
-    count, dimension = one.settings["count"], one.settings["dimension"]
-    rate = enskog_rate(one.settings["packing_fraction"], dimension)
+    frames, interval = one.schedule.samples + 1, one.schedule.sample_interval
+    rate = 1.0 / float(theory.enskog_diffusion(0.02, 3))
     decay = math.exp(-rate * interval)
-    velocity_variance = 1.0 - decay**2
     place_variance = (2.0 * rate * interval - 3.0 + 4.0 * decay - decay**2) / rate**2
     covariance = (1.0 - decay) ** 2 / rate
-    noise = np.linalg.cholesky([[velocity_variance, covariance], [covariance, place_variance]])
-    place = np.zeros((count, dimension))
-    velocity = rng.standard_normal((count, dimension))
+    noise = np.linalg.cholesky([[1.0 - decay**2, covariance], [covariance, place_variance]])
+    place, velocity = np.zeros((100, 3)), rng.standard_normal((100, 3))
     places, velocities = [], []
     for _ in range(frames):
         places.append(place)
         velocities.append(velocity)
-        kicks = np.einsum("ij,jnd->ind", noise, rng.standard_normal((2, count, dimension)))
+        kicks = np.einsum("ij,jnd->ind", noise, rng.standard_normal((2, 100, 3)))
         place = place + velocity * (1.0 - decay) / rate + kicks[1]
         velocity = velocity * decay + kicks[0]
     shared = drift * interval * np.arange(frames)[:, None, None]
     moved, velocities = length * (np.array(places) + shared), speed * (np.array(velocities) + drift)
-    lags = asked["lags"] + 1
+    lags = one.parameters["correlations"]["lags"] + 1
     curves = correlate(centred(moved), centred(velocities), interval * length / speed, lags)
     pairs = frames - np.arange(lags)
-    sums = (dimension * curves.correlation, curves.msd, 2 * dimension * curves.running)
+    sums = (3 * curves.correlation, curves.msd, 6 * curves.running)
     return xr.Dataset(
         {name: (("frame", "lag"), (values * pairs)[None]) for name, values in zip(SUMS, sums, strict=True)}
         | {"correlated_samples": ("frame", [float(frames)])},
-        coords={"lag": curves.time, "spatial": list("xyz"[:dimension])},
+        coords={"lag": curves.time, "spatial": list("xyz")},
     )
-
-
-def enskog_rate(packing_fraction, dimension=3):
-    """Decay rate of the velocity in a Langevin gas with Enskog's D."""
-    return 1.0 / float(theory.enskog_diffusion(packing_fraction, dimension))
 
 
 @pytest.fixture
 def stored(monkeypatch):
-    """Stands in for the files: `stored[path] = dataset`."""
+    """Puts Langevin particles, sampled as a point says, in the place of its trajectories."""
     files = {}
     monkeypatch.setattr(_displacement, "open_trajectory", files.__getitem__)
-    return files
 
+    def fill(one, seed, **unit):
+        rng = np.random.default_rng(seed)
+        files.update({path: langevin(rng, one, **unit) for path in one.replica_paths})
 
-def fill(stored, one, seed, **unit):
-    """Langevin particles with Enskog's D, sampled as the point says, in the place of its trajectories."""
-    rng = np.random.default_rng(seed)
-    for path in one.replica_paths:
-        stored[path] = langevin(rng, one, **unit)
+    return fill
 
 
 @pytest.mark.parametrize("unit", [{}, {"drift": 7.0}, {"length": 2.0, "speed": 3.0}], ids=str)
 def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
     one = point(collisions_per_particle=240, samples=240, radius=0.5 * unit.get("length", 1.0))
-    fill(stored, replace(one, settings={**one.settings, "radius": 0.5}), seed=4, **unit)
+    stored(replace(one, settings={**one.settings, "radius": 0.5}), seed=4, **unit)
     ds = msd_spheres.measure([one], {}).isel(point=0)
     expected, error = float(theory.enskog_diffusion(0.02, 3)), float(ds["diffusion_error"])
     assert error < 0.03 * expected
@@ -98,36 +84,6 @@ def test_diffusion_of_langevin_particles_in_any_unit(stored, unit):
     assert ds["msd"].values[1:] == pytest.approx(theoretical[1:], rel=0.06)
     assert ds["running"].values[-1] == pytest.approx(expected, rel=0.08)
     assert bool(ds["largest"]) and not bool(ds["in_series"])
-
-
-def test_short_runs_compare_green_and_kubo_with_einstein(stored):
-    one = point(experiment="short", collisions_per_particle=60, samples=240)
-    fill(stored, one, seed=5)
-    ds = msd_spheres.measure([one], {}).isel(point=0)
-    assert np.isnan(ds["diffusion"])
-    assert float(ds["interval"]) == pytest.approx(0.25, rel=0.02)
-    assert abs(float(ds["integral_difference"])) < max(4 * float(ds["integral_difference_error"]), 0.01)
-    late = ds["time"] * ds["collision_rate"] > 12.0
-    integral = ds["integral"].where(late).mean()
-    assert float(integral) == pytest.approx(float(theory.enskog_diffusion(0.02, 3)), rel=0.1)
-
-
-def test_sizes_at_one_packing_fraction_make_a_series(stored):
-    chosen = [point(count=count, name=f"count={count}", packing_fraction=0.3) for count in (32, 48, 64)]
-    chosen.append(point(count=32, packing_fraction=0.05))
-    for seed, one in enumerate(chosen):
-        fill(stored, one, seed=seed)
-    ds = msd_spheres.measure(chosen, {})
-    assert ds["in_series"].values.tolist() == [True, True, True, False]
-    assert ds["largest"].values.tolist() == [False, False, True, True]
-    # Langevin particles do not feel each other: no slope, and Enskog's D in every container.
-    assert abs(float(ds["size_slope"])) < 4 * float(ds["size_slope_error"])
-    enskog = float(theory.enskog_diffusion(0.3, 3))
-    assert abs(float(ds["size_intercept"]) - enskog) < 4 * float(ds["size_intercept_error"])
-    side = ds["side"].values
-    carried = float(theory.number_density(0.3, 3)) * float(ds["diffusion"][0])
-    expected = theory.yeh_hummer(side[0], float(theory.enskog_viscosity(0.3, 3)) + carried)
-    assert float(ds["correction"][0]) == pytest.approx(float(expected))
 
 
 def test_the_slope_against_the_logarithm_is_found(monkeypatch):
@@ -161,36 +117,15 @@ def test_the_slope_against_the_logarithm_is_found(monkeypatch):
 )
 def test_runs_that_cannot_tell_are_refused(stored, change, key):
     one = point(**change)
-    fill(stored, one, seed=6)
+    stored(one, seed=6)
     with pytest.raises(SceneError, match=key):
         msd_spheres.measure([one], {})
 
 
-def test_the_start_of_a_gas_is_enskogs_and_momentum_is_restored(tmp_path):
-    settings = {
-        "dimension": 3, "count": 256, "radius": 0.5, "boundary": "periodic", "packing_fraction": 0.2,
-        "temperature": 2.0, "arrangement": "lattice", "collisions_per_particle": 12, "equilibration": 20,
-        "samples": 240, "lags": 120, "replicas": 3,
-    }  # fmt: skip
-    point = simulated(Point("memory", "single", "simulate", settings, str(tmp_path), 3))
-    fitted = {"start_to": 0.4, "tail": [2.0, 4.0]}
-    ds = velocity_autocorrelation.measure([point], fitted).isel(point=0)
-    assert abs(ds["start_rate"].item() - 2.0 / 3.0) < 4.0 * ds["start_rate_error"].item() < 0.1
-    assert ds["correlation"][0].item() == pytest.approx(1.0, rel=1e-12)  # (1 - 1/N) + 1/N
-    assert ds["collisions"][1].item() == pytest.approx(0.05, rel=0.1)
-    assert np.isnan(ds["tail_ratio"].item())
-    ds = velocity_autocorrelation.measure([point], fitted | {"start_to": 0.1}).isel(point=0)
-    assert np.isnan(ds["start_rate"].item()) and np.isfinite(ds["tail_ratio"].item())
-
-
-def test_the_initial_rate_is_that_of_the_logarithm():
+def test_the_initial_rate_and_the_tail_are_fitted():
     s = np.linspace(0.05, 0.3, 6)
-    assert velocity_autocorrelation.initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2)) == pytest.approx(
-        0.7, rel=1e-10
-    )
-
-
-def test_the_tail_is_extrapolated_over_the_modes():
+    found = velocity_autocorrelation.initial_rate(s, np.exp(-0.7 * s + 0.1 * s**2))
+    assert found == pytest.approx(0.7, rel=1e-10)
     s = np.linspace(16.0, 60.0, 45)
     modes = s**-1.5
     fitted = velocity_autocorrelation.fit_tail(s, modes * (1.1 + 5.0 / s), modes)

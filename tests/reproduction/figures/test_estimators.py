@@ -1,6 +1,4 @@
-"""Estimators of a short run."""
-
-from __future__ import annotations
+"""Blocks of counts and impulses of a short run."""
 
 from dataclasses import replace
 
@@ -9,7 +7,7 @@ import pytest
 
 import gaspart as gp
 from gaspart.analysis.run import open_run
-from gaspart.reproduction.figures.estimators import blocks_of, pressures_of
+from gaspart.reproduction.figures.estimators import blocks_of
 from gaspart.trajectory.reading import open_trajectory
 
 
@@ -39,15 +37,3 @@ def test_other_bins_and_runs_without_impulses_are_refused(run):
             blocks_of(run, width)
     with pytest.raises(gp.SceneError, match="None"):
         blocks_of(replace(run, data=run.data.assign_attrs(tallies="[]")), 0.5)
-
-
-def test_pressures_of_a_run_by_impulses_and_with_what_is_known(run, tmp_path):
-    """Under gravity nothing is known beside them, so that both are one."""
-    assert pressures_of(run) == {"pressure": 1.0, "pressures_apart": 0.0}
-    scene = replace(run.scene, gravity=None)
-    path = gp.run(
-        scene, gp.EventDriven(), 1, 200.0, 0.5, tmp_path / "run.nc", tallies=[gp.ImpulseTally("z", 4)]
-    )
-    with open_trajectory(path) as data, open_run(data, 20.0) as found:
-        gained = pressures_of(found)
-    assert gained["pressure"] > 4.0 and abs(gained["pressures_apart"]) < 0.1

@@ -9,12 +9,11 @@ import xarray as xr
 from reproduction.figures.test_virial import ETA
 
 from gaspart.analysis.estimate import Estimate
-from gaspart.reproduction.figures import adsorption, beds, buoyancy
+from gaspart.reproduction.figures import adsorption, beds
 from gaspart.reproduction.figures.msd_spheres import size_series
 from gaspart.reproduction.figures.virial import fit_coefficients
-from gaspart.reproduction.table import Table, from_rows
+from gaspart.reproduction.table import Table
 from gaspart.theory import enskog_viscosity, erpenbeck_wood_diffusion, number_density, yeh_hummer
-from gaspart.theory.brownian import displaced_area
 from gaspart.theory.state import compressibility_factor
 
 pytestmark = pytest.mark.thorough
@@ -39,23 +38,6 @@ WELL = xr.Dataset({
         "length": 0.2, "length_error": 0.0004,
     }.items()
 })  # fmt: skip
-PACKING, EXPECTED = np.array([0.4, 0.3, 0.2, 0.1]), np.linspace(71.0, -1.0, 10)
-DISPLACED, BEYOND = displaced_area(PACKING, 6.0) * PACKING, np.sqrt(displaced_area(PACKING, 6.0)) - 6.0
-FIXED = from_rows("fixed", [
-    {
-        "height": n, "radius_expected": radius, "count_radius": radius, "count_radius_error": 0.03,
-        "force": mass, "force_error": 0.02 * mass, "missing": mass, "missing_error": 0.01 * mass,
-        "force_radius": radius, "force_radius_error": 0.06,
-    }
-    for n, (radius, mass) in enumerate(zip(BEYOND, DISPLACED, strict=True))
-])  # fmt: skip
-SOURCE = from_rows("source", [
-    {
-        "mass": 60.0, "density": 0.2 + 0.005 * (31.5 - height) / 8.0, "height": height, "height_error": 0.3,
-        "expected": height, "lowest": 2.5, "highest": 60.5,
-    }
-    for height in EXPECTED
-]).assign_attrs(source_density=0.2)  # fmt: skip
 SIDES = (np.array([256, 864, 2048]) / float(number_density(0.3, 3))) ** (1 / 3)
 SIZES = xr.Dataset({
     name: ("point", np.broadcast_to(values, 3))
@@ -90,15 +72,6 @@ def well(rng):
     return [claim.measured - claim.expected for claim in islice(adsorption.claims(ds), 3)]
 
 
-def large_disc(rng):
-    """The force and the radius, means of all heights, and the density that floats in the middle."""
-    fixed = Table(scattered(rng, FIXED, 15, ["force", "missing", "force_radius"]), "fixed")
-    *_, force, radius = buoyancy._claim_fixed(fixed)
-    source = Table(scattered(rng, SOURCE, 15, ["height"]), "source")
-    *_, neutral = buoyancy._claim_source(source[2:8])
-    return [claim.measured - claim.expected for claim in (force, radius, neutral)]
-
-
 def sizes(rng):
     """The slope of D in 1 / L."""
     found = size_series(scattered(rng, SIZES, 5, ["diffusion"]))
@@ -117,7 +90,7 @@ def state(rng):
     return [found.estimate(n) - exact.values[n] for n in range(3)]
 
 
-@pytest.mark.parametrize("figure", [bed, well, large_disc, sizes, state])
+@pytest.mark.parametrize("figure", [bed, well, sizes, state])
 def test_fits_to_a_few_replicas_are_as_certain_as_they_state(figure):
     rng = np.random.default_rng(17)
     found = np.array([[one.deviation for one in figure(rng)] for _ in range(REPEATED)])

@@ -1,7 +1,5 @@
 """Heat capacity of pairs of runs whose kinetic energies are made up."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

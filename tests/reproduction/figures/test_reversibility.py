@@ -1,7 +1,5 @@
 """Made-up echoes with a known growth."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -9,7 +9,6 @@ import xarray as xr
 from gaspart.reproduction.figures import _timings as timings
 
 PARTICLE, TEST, BOX = 30e-9, 12e-9, 0.3e-9
-IDEAL = math.sqrt(13.5 * TEST / BOX)
 
 
 def costs(boxes, noise=0.0, seed=0):

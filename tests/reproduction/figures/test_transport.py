@@ -1,38 +1,11 @@
-"""Viscosity and conductivity of short runs, and the bounds within which theory is claimed."""
+"""The bounds within which theory of transport is claimed, and the fit of the transfer at collisions."""
 
-from __future__ import annotations
-
+import numpy as np
 import pytest
-from reproduction.made import simulated
+import xarray as xr
 
-from gaspart import theory
-from gaspart.reproduction.figures import transport
-from gaspart.reproduction.points.point import Point
-from gaspart.reproduction.table import entries, from_rows
-
-GAS = {
-    "dimension": 3, "count": 64, "radius": 0.5, "packing_fraction": 0.1, "boundary": "periodic",
-    "temperature": 1.0, "exact_temperature": True, "arrangement": "lattice", "engine": "event",
-    "collisions_per_particle": 800, "equilibration": 20, "samples": 800, "lags": 15, "stress": True,
-    "follow": 1, "replicas": 6,
-}  # fmt: skip
-MEASURE = {"viscosity": transport.measure_viscosity, "conductivity": transport.measure_conductivity}
-
-
-def test_coefficients_are_near_enskogs(tmp_path):
-    """At packing fraction 0.1, where these differ from it by a few per cent, by 4 sigma of some 6 %."""
-    one = simulated(Point("spheres", "one", "simulate", GAS, str(tmp_path), 1))
-    for name, measure in MEASURE.items():
-        row = measure([one], {}).isel(point=0)
-        error = float(row["value_error"])
-        assert error < 0.12
-        assert abs(float(row["value"]) - 1.0) < 4.5 * error + 0.03
-        assert float(row["finite"]) == theory.transport_finite_size_factor(64, 3, name)
-        assert abs(float(row["difference"])) < 4.5 * float(row["difference_error"]) + 0.02
-        assert abs(float(row["time"][1]) - 1.5) < 0.02
-        if name == "viscosity":
-            assert float(row["bulk_error"]) < 0.15
-            assert abs(float(row["bulk"]) - 1.0) < 4.5 * float(row["bulk_error"]) + 0.03
+from gaspart.reproduction.figures import dsmc, transport
+from gaspart.reproduction.table import Table, entries, from_rows
 
 
 @pytest.mark.parametrize(
@@ -50,3 +23,14 @@ def test_theory_has_a_verdict_only_where_it_is_known(dimension, eta, subjects):
     row |= entries(dict.fromkeys(("value", "growth", "bulk", "difference"), (1.0, 0.01)))
     claims = [one for one in transport.claim_viscosity(from_rows("point", [row])) if not one.no_verdict]
     assert [one.claim[: len(text)] for one, text in zip(claims, subjects, strict=True)] == subjects
+
+
+def test_the_transfer_is_fitted_where_cells_are_narrow_and_steps_short():
+    width, step = np.array([0.2, 0.3, 0.4, 0.5, 2.0]), np.array([0.1, 0.4, 0.1, 0.8, 0.1])
+    transfer = np.where(width < 1.0, width**2 * (0.1132 - 0.03 * width - 0.02 * step), 9.0)
+    columns = {"part": ["fluxes"] * 5, "width": width, "step": step, "transfer": transfer}
+    ds = xr.Dataset({name: ("point", values) for name, values in columns.items()})
+    ds["transfer_error"] = 0.01 * ds["transfer"]
+    fit = dsmc._fit_transfer(Table(ds, "point"))
+    assert [found.value for found in fit.values()] == pytest.approx([0.1132, -0.03, -0.02])
+    assert np.isnan(dsmc._fit_transfer(Table(ds.isel(point=[0, 1, 4]), "point"))["coefficient"].value)
