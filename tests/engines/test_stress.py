@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from scenes import gas
 
 import gaspart as gp
 from gaspart import theory
+from gaspart.analysis import transport
 from gaspart.state.tally import StressTally
 from gaspart.trajectory.recipe import Recipe, read_recipe
 from gaspart.trajectory.run import simulation_of
@@ -226,3 +228,14 @@ def test_the_conductivity_of_a_gas_with_drawn_velocities_is_that_of_enskog(tmp_p
     found = gp.analysis.thermal_conductivity(path, start=0.0)
     assert float(found.error) < 0.12 * float(found.theory)
     assert abs(float(found.estimate) - float(found.theory)) < 3.0 * float(found.error)
+
+
+@pytest.mark.parametrize("lasts", [2.0, 8.0, 30.0])
+def test_correlations_that_last_longer_than_their_lags_are_warned_of(lasts, recwarn):
+    """The integral of exp(-t / lasts) until 10 leaves out .7, 40 and 250 % of itself."""
+    lags = np.linspace(0.0, 10.0, 11)
+    noise = 0.001 * np.random.default_rng(3).standard_normal((16, 11)).cumsum(axis=1)
+    transport._warn_of_rest("shear_viscosity", 1.0 - np.exp(-lags / lasts) + noise, 10.0)
+    found = [float(re.search(r"some (\d+)% more", str(one.message))[1]) for one in recwarn]
+    rest = 100.0 / np.expm1(10.0 / lasts)
+    assert found == ([pytest.approx(rest, rel=0.1)] if rest > 3.0 else [])

@@ -96,7 +96,9 @@ def options(kind, scene, engine, interval):
     if kind.stress and not kind.opened and (not kind.wide or "transport" in kind.run):
         try:
             engine.check_tally(StressTally(), scene)
-            found["correlations"] = Correlations(interval / 2.0, LAGS, stress=True)
+            # transport needs lags as long as those of the usual interval
+            finer = round(kind.run["interval"] / interval) if "transport" in kind.run else 1
+            found["correlations"] = Correlations(interval / 2.0, finer * LAGS, stress=True)
         except SceneError:
             pass
     if "impulses" in kind.run and ImpulseTally.name in engine.tallies:

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 
 import numpy as np
 import xarray as xr
@@ -129,7 +130,8 @@ def shear_viscosity(source: Source, lag: float | None = None, start: float | Non
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Longest time difference of the correlations that are summed. Default: the longest stored lag.
+        Longest time difference of the correlations that are summed. Default: the longest stored lag, with a
+        warning if the sum clearly goes on to grow there.
 
     Returns
     -------
@@ -170,7 +172,8 @@ def bulk_viscosity(source: Source, lag: float | None = None, start: float | None
     source : str, Path or Dataset
         A trajectory with correlations of the stress (a path or an open trajectory).
     lag : float, [time], optional
-        Longest time difference of the correlations that are summed. Default: the longest stored lag.
+        Longest time difference of the correlations that are summed. Default: the longest stored lag, with a
+        warning if the sum clearly goes on to grow there.
 
     Returns
     -------
@@ -318,6 +321,8 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
         np.sum([form(run, part) for part in _PARTS.get(name, (name,))], axis=0)
         for form in (green_kubo, helfand)
     )
+    if lag is None:
+        _warn_of_rest(public, running, lags * settings.interval)
     about = describe(public, run, run.temperature)
     units = about["units"]
     result = scalar(public, running[:, lags], run.time[-len(running) - 1 :], **about)
@@ -329,6 +334,30 @@ def _coefficient(run: Run, public: str, name: str, lag: float | None) -> Observa
         result[key] = ("lag", values, {"units": units, "long_name": f"{key} until this lag"})
         result[f"{key}_error"] = ("lag", errors, {"units": units, "long_name": "standard uncertainty"})
     return result
+
+
+LEFT_OUT = 0.03
+"""Part of a coefficient that longer lags would add, from which a warning is given."""
+
+
+def _warn_of_rest(public: str, running: np.ndarray, lag: float) -> None:
+    """Warn if the integral of a correlation function (blocks, lag) clearly grows beyond its last lag.
+
+    If the growth of the second half of the lags decays exponentially, x is the ratio of the growths of the
+    halves, and x^2 / (1 - x^2) of the integral is left out.
+    """
+    half = running.shape[1] // 2
+    first, _ = means_of(running[:, half])
+    growth, error = means_of(running[:, -1] - running[:, half])
+    if first <= 0.0 or growth < 4.0 * error:
+        return
+    ratio = min(float(growth / first), 0.99)
+    if (rest := ratio**2 / (1.0 - ratio**2)) > LEFT_OUT:
+        warnings.warn(
+            f"gaspart: {public}: correlations last longer than their longest lag, {lag:g}: "
+            f"some {rest:.0%} more is left out; run with more lags",
+            stacklevel=4,
+        )
 
 
 _PARTS = {"shear": ("shear", "rotational")}
