@@ -29,7 +29,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= all
 QUIETLY = -m pip --quiet --disable-pip-version-check
 PIP = .venv/bin/python $(QUIETLY)
-SNAKEMAKE = .venv/bin/python -m snakemake --cores $(CORES) $(if $(EFFORT),--config effort=$(EFFORT))
+SNAKEMAKE = .venv/bin/python -m snakemake --logger gaspart --cores $(CORES) $(if $(EFFORT),--config effort=$(EFFORT))
 # Printed after Snakemake has ended, also if there was nothing to do.
 VERDICTS = @.venv/bin/python -c 'import sys; from gaspart.reproduction.claims import summary; print(summary(sys.argv[1]))'
 

@@ -57,7 +57,7 @@ def test_a_head_on_collision_is_exact():
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("search", ["boxes", "pairs"])
+@pytest.mark.parametrize("search", ["boxes", pytest.param("pairs", marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("radius", [1e-5, 1e-7, 1e-9])
 @pytest.mark.parametrize(("miss", "touches"), [(0.7, True), (1.5, False)])
 def test_tiny_particles_far_apart_touch_if_they_pass_within_a_diameter(

@@ -4,7 +4,8 @@ import logging
 
 import pytest
 
-from gaspart.reproduction.progress import USUAL, LogHandler, TimeLeft, describe
+from gaspart.reproduction.progress import USUAL, TimeLeft, describe
+from snakemake_logger_plugin_gaspart import LogHandler
 
 
 def test_steps_of_known_length_on_two_cores():

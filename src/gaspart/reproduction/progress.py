@@ -1,4 +1,4 @@
-"""Time left of a run of the workflow, as a logger plugin of Snakemake that adds a line to its progress.
+"""Time left of a run of the workflow, which `snakemake_logger_plugin_gaspart` adds to the lines of Snakemake.
 
 Steps differ: one compiles for a minute, one writes a page. So the steps that are left count with the mean
 time of those of their rule that have ended, and before one has ended, with a usual time.
@@ -7,16 +7,9 @@ time of those of their rule that have ended, and before one has ended, with a us
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from logging import LogRecord, getLogger
-from math import inf
-
-from snakemake_interface_logger_plugins.base import LogHandlerBase
-from snakemake_interface_logger_plugins.common import LogEvent
 
 USUAL = {"warm": 8.0, "simulate": 3.0, "compute": 30.0, "figure": 8.0, "animate": 20.0, "play": 30.0}
 """Seconds of a step of a rule, before one has ended; 1 s for others."""
-_BETWEEN = 10.0  # seconds between two lines
-_LOGGER = getLogger("snakemake.logging")
 
 
 class TimeLeft:
@@ -65,32 +58,3 @@ def describe(part: float, seconds: float) -> str:
     minutes = seconds / 60.0
     left = f"{minutes:.0f} min" if minutes >= 1.5 else f"{max(seconds, 1.0):.0f} s"
     return f"{100.0 * part:.0f} % of the work done, some {left} left"
-
-
-class LogHandler(LogHandlerBase):
-    """Writes the time left after Snakemake's own lines, at most every ten seconds."""
-
-    writes_to_stream = False  # Snakemake goes on to write its own lines
-    writes_to_file = False
-    has_filter = True  # the begin of a step counts also where Snakemake does not print it
-    has_formatter = True
-    needs_rulegraph = False
-
-    def __post_init__(self) -> None:
-        self._time_left = TimeLeft()
-        self._latest = -inf
-
-    def emit(self, record: LogRecord) -> None:
-        fields, now = record.__dict__, record.created
-        event = fields.get("event")
-        if event == LogEvent.RUN_INFO:
-            self._time_left.plan({rule: n for rule, n in fields["stats"].items() if rule != "total"})
-        elif event == LogEvent.JOB_INFO:
-            self._time_left.start(fields["jobid"], fields["rule_name"], now)
-        elif event == LogEvent.JOB_FINISHED:
-            self._time_left.end(fields["job_id"], now)
-        elif event == LogEvent.PROGRESS and fields["done"] < fields["total"]:
-            if now > self._latest + _BETWEEN:
-                self._latest = now
-                # by Snakemake's own handlers, which write whole lines
-                _LOGGER.info(describe(*self._time_left.seconds(now)))
