@@ -137,7 +137,7 @@ def test_the_tables_state_every_claim_trajectory_and_job(archive, project):
     assert len(rows(tables.CLAIMS)) == len(rows(TABLE)) > 30
     jobs = rows(tables.JOBS)
     assert {"simulate", "compute", "figure", "report", "warm"} <= {one["rule"] for one in jobs}
-    assert all(float(one["cpu_seconds"]) > 0.0 and one["ended"].endswith("+00:00") for one in jobs)
+    assert all(float(one["cpu_seconds"]) >= 0.0 and one["ended"].endswith("+00:00") for one in jobs)
     with zipfile.ZipFile(archive) as file:
         machine = json.loads(file.read(tables.RUN))["machine"]
     assert machine["processor"] and machine["packages"]["snakemake"]

@@ -96,7 +96,8 @@ def test_the_budget_has_the_time_and_the_decided_claims_of_every_figure(smoke, m
     names = [log.relative_to(logs).with_suffix("").parts for log in logs.rglob("*.log")]
     assert len(names) > 5 * len(found)
     used = {name: job_time.read_used(logs.parent, *name) for name in names}
-    assert not [name for name, one in used.items() if not (one and one.seconds > 0.0 and one.memory > 1.0)]
+    assert not [name for name, one in used.items() if not (one and one.seconds >= 0.0 and one.memory > 1.0)]
+    assert sum(one.seconds > 0.0 for one in used.values()) > 0.9 * len(used)  # clocks tick every 10 ms
     with (smoke.path / "results/smoke/tables/claims.csv").open(newline="") as file:
         verdicts = {(row["figure"], row["claim"]): row["verdict"] for row in csv.DictReader(file)}
     for figure, one in found.items():
