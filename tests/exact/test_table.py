@@ -69,7 +69,8 @@ def test_finer_intervals_between_frames_have_the_exact_values(name, engine):
 @pytest.mark.parametrize("seed", (11, 12))
 @pytest.mark.parametrize("name", kinds())
 def test_longer_runs_have_the_exact_values(name, seed):
-    check(name, "event", seed, 4.0)
+    longer = 2.0 if name == "compressed" else 4.0  # its piston would leave no room
+    check(name, "event", seed, longer)
 
 
 def test_no_cell_is_empty():
