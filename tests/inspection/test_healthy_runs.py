@@ -43,7 +43,7 @@ KINDS = {
 
 def verdicts(kind, seed, folder):
     scene, engine, duration, interval = KINDS[kind]
-    path = gp.run(scene, engine, seed, duration, interval, folder / f"{seed}.nc")
+    path = gp.run(scene, engine, seed, duration, interval, folder / f"{kind}-{seed}.nc")
     return {check.name: check for check in judge(read_frames(path))}
 
 

@@ -19,7 +19,7 @@ def uneven_gas(dimension, count, ratio):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_size_ratios_to_ten_thousand(dimension):
     """The same events, from less than a tenth of the particles looked at, and no energy lost."""
-    scene = uneven_gas(dimension, 300 if dimension == 2 else 3000, 1e4)
+    scene = uneven_gas(dimension, 1000 if dimension == 2 else 3000, 1e4)
     boxes, direct = (events_of(scene, search, 500) for search in ("boxes", "direct"))
     assert same_bits(boxes, direct)
     assert (boxes.events["particles"] == 0).any()
