@@ -101,7 +101,7 @@ class Tally:
     collisional_stress_sum : ndarray, shape (d, d), optional, [mass length^2/time]
         Collisional part of `stress_sum`.
     heat_sum : ndarray, shape (d,), optional, [mass length^3/time^2]
-        Time integral of the heat flux times the volume [1]_: the integral of E v over all particles, plus r
+        Time integral of the heat flux times the volume: the integral of E v over all particles, plus r
         dE for each collision, where dE is the energy that the first particle gains.
     flux_velocity : ndarray, shape (d,), optional, [length/time]
         Velocity of the centre of mass, from which all velocities in `stress_sum` and `heat_sum` are measured.
