@@ -21,17 +21,16 @@ from gaspart.inspection.frames import Frames, Rows, map_frames, read_in_blocks
 from gaspart.inspection.statistics import (
     FIT_ERROR,
     SPEEDS,
-    UNEVEN,
     WIDTH,
     contact_values,
     decorrelated_frames,
-    density_modulation,
     describe_motion,
     diffusion,
     expected_diffusion,
     first_relaxed_frame,
     groups_of,
     has_too_few_contacts,
+    is_uneven,
     judge_speeds,
     why_not,
     why_not_speeds,
@@ -177,7 +176,7 @@ def _pressure(frames: Frames) -> Check:
     if len(chosen) < _LEAST_FRAMES:
         text = f"{len(chosen)} independent samples are too few for an error: it needs {_LEAST_FRAMES}"
         return Check(name, None, text)
-    if any(density_modulation(frames, n) > UNEVEN for n in (chosen[0], chosen[-1])):
+    if is_uneven(frames, chosen):
         return Check(name, None, "the density is not uniform: not relaxed")
     if frames.counted is not None and frames.time is not None:
         return _by_collisions(frames.counted, float(frames.time[first]))
@@ -236,10 +235,9 @@ def _diffusion(frames: Frames) -> Check:
     first = first_relaxed_frame(frames)
     if first is None:
         return Check(name, None, describe_motion(frames))
-    assert frames.velocities is not None and frames.time is not None, "see `why_not`"
     used = frames.parts(slice(first, None))
-    energy = (frames.velocities[first] ** 2).sum(axis=1)
-    if max(density_modulation(used, 0), density_modulation(used, 0, energy)) > UNEVEN:
+    relaxed = range(first, len(frames.positions))
+    if is_uneven(frames, relaxed) or is_uneven(frames, relaxed, energy=True):
         return Check(name, None, "density or temperature is not uniform: not relaxed")
     if reason := why_not(used):
         return Check(name, None, reason)
