@@ -153,7 +153,6 @@ def _row(point: Point, state: MeasuredState, settings: dict) -> dict[str, Any]:
         "successes": sum(int(replica.successes.sum()) for replica in replicas),
         "hit_frames": hits,
         "frames": frames,
-        "places": 1.0 / resolution,  # random positions that the trials represent
         "resolution": resolution,  # probability that corresponds to a single success
         "works": int(hits >= settings["enough"]),
     }
