@@ -10,8 +10,9 @@ from gaspart.analysis.estimate import Estimate
 from gaspart.errors import SceneError
 from gaspart.reproduction import decide
 from gaspart.reproduction.claims import Claim
-from gaspart.reproduction.config import EFFORTS, effort_of, keep_efforts, read_efforts, write_efforts
+from gaspart.reproduction.config import EFFORTS, keep_efforts, read_efforts, write_efforts
 from gaspart.reproduction.decide import Open, find_open, next_efforts
+from gaspart.reproduction.points.points import effort_of
 
 BLOCK = {"experiments": ["hot", "cold"]}
 
@@ -75,11 +76,14 @@ def test_efforts_are_doubled_up_to_the_most_and_hopeless_claims_are_left():
 
 
 def test_points_keep_the_largest_effort_with_which_they_were_made(tmp_path):
-    config = {"effort": 0.25, "experiments": {"a": {}, "b": {"effort": 2.0}, "c": {}}}
+    config = {
+        "effort": 0.25,
+        "experiments": {"a": {}, "b": {"effort": 2.0}, "c": {}, "d": {"least_effort": 0.5}},
+    }
     write_efforts(tmp_path, {"a": 1.0, "b": 1.0})
     write_efforts(tmp_path, {"c": 0.25, "removed": 4.0})
     assert keep_efforts(config, tmp_path) == {"a": 1.0}
-    assert [effort_of(config, name) for name in "abc"] == [1.0, 2.0, 0.25]
+    assert [effort_of(config, name) for name in "abcd"] == [1.0, 2.0, 0.25, 0.5]
     assert keep_efforts(config, tmp_path / "none") == {}
 
 

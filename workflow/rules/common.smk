@@ -46,12 +46,12 @@ from gaspart.reproduction import job_server
 from gaspart.reproduction.claims.table import fill_caption
 from gaspart.reproduction.claims.table import summary
 from gaspart.reproduction.config import EFFORTS, FAMILIES, add_families, check, explain_error, is_own
-from gaspart.reproduction.config import effort_of, keep_efforts, read_numbers, remove_null, write_efforts
+from gaspart.reproduction.config import keep_efforts, read_numbers, remove_null, write_efforts
 from gaspart.reproduction import registry
 from gaspart.reproduction.registry import caption, find, of_claims
 from gaspart.reproduction.points.modules import digest, measuring_digest, point_sources, stage_sources, stamp
 from gaspart.reproduction.points.point import TRAJECTORIES
-from gaspart.reproduction.points.points import all_points
+from gaspart.reproduction.points.points import all_points, effort_of
 from gaspart.reproduction.points.points import figure_points as points_of_figure
 from gaspart.reproduction.points.point import compile_task
 from gaspart.errors import SceneError

@@ -5,7 +5,6 @@ Errors are single lines with file, key, value and rule.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager, suppress
@@ -23,7 +22,7 @@ from gaspart.reproduction.claims.table import fill_caption, place_fault
 from gaspart.reproduction.points import jobs, point_keys
 from gaspart.reproduction.points import points as config_keys
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
-from gaspart.reproduction.points.points import POINT, figure_points, points
+from gaspart.reproduction.points.points import POINT, effort_of, figure_points, points
 from gaspart.reproduction.report.page import split_caption
 from gaspart.yaml_text import DEEPEST, MOST_VALUES, dump_yaml, is_exponential, read_yaml
 
@@ -99,14 +98,6 @@ def raise_efforts(config: dict[str, Any], efforts: Mapping[str, float]) -> dict[
     for name, effort in raised.items():
         config["experiments"][name]["effort"] = effort
     return raised
-
-
-def effort_of(config: dict[str, Any], experiment: str) -> float:
-    """Return the effort of an experiment; inf if the config does not state it as a number."""
-    experiments = config.get("experiments")
-    block = experiments.get(experiment) if isinstance(experiments, dict) else None
-    effort = block.get("effort", config.get("effort", 1.0)) if isinstance(block, dict) else None
-    return effort if isinstance(effort, int | float) else math.inf
 
 
 def read_efforts(points: Path) -> dict[str, float]:

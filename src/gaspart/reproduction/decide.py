@@ -16,9 +16,9 @@ import numpy as np
 
 from gaspart.errors import SceneError
 from gaspart.reproduction.claims.judging import sufficient
-from gaspart.reproduction.config import effort_of, open_config, write_efforts
+from gaspart.reproduction.config import open_config, write_efforts
 from gaspart.reproduction.cost import claims_of, is_decided_by_runs, point_seconds
-from gaspart.reproduction.points.points import all_points, points
+from gaspart.reproduction.points.points import all_points, effort_of, points
 from gaspart.reproduction.table import MADE_OF
 
 if TYPE_CHECKING:

@@ -19,11 +19,11 @@ from typing import Any
 from gaspart.errors import SceneError
 from gaspart.reproduction.archive import tables
 from gaspart.reproduction.archive.stored import verify
-from gaspart.reproduction.config import effort_of, open_config, raise_efforts, write_efforts
+from gaspart.reproduction.config import open_config, raise_efforts, write_efforts
 from gaspart.reproduction.jobs.data import kept_path
 from gaspart.reproduction.points.modules import stamp
 from gaspart.reproduction.points.point import TRAJECTORIES, Point
-from gaspart.reproduction.points.points import all_points
+from gaspart.reproduction.points.points import all_points, effort_of
 from gaspart.reproduction.points.trust import require_own
 from gaspart.trajectory import provenance
 from gaspart.yaml_text import read_yaml

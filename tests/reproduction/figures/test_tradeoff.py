@@ -110,11 +110,14 @@ def test_two_errors_have_no_order():
     row = {
         "time_step": step,
         "bias": [bias / 100.0, -(step**2)],
-        "bias_error": [error / 100.0, step**2 / 50.0],
+        "bias_error": [error / 100.0, step**2 / 30.0],
+        "bias_freedom": np.full((2, 5), 23.0),
     }
-    (order, order_error), (second, second_error) = speed_accuracy.error_orders(row, 0.2)
+    (order, order_error, _), (second, second_error, freedom) = speed_accuracy.error_orders(row, 0.2)
     assert np.isnan(order) and np.isnan(order_error)
-    assert second == pytest.approx(2.0) and second_error < 0.05
+    assert second == pytest.approx(2.0) and second_error < 0.05 and freedom == 23.0
+    few = row | {"bias_freedom": np.full((2, 5), 2.0)}  # 30 standard errors of three snapshots
+    assert np.isnan(speed_accuracy.error_orders(few, 0.2)).all()
 
 
 def test_a_pressure_error_is_weighed_by_its_part_in_z(dataset):

@@ -123,6 +123,7 @@ def _errors(point: Point) -> dict:
         "time_step": run.time_step.values,
         "bias": both[:, 0],
         "bias_error": both[:, 1],
+        "bias_freedom": np.full(both[:, 1].shape, run.sizes["snapshot"] - 1.0),
         "missed": run.missed.sum("snapshot", skipna=False).values / listed,
         "made_up": run.made_up.sum("snapshot", skipna=False).values / listed,
         "energy_drift": np.abs(run.energy_drift).max("snapshot").values,

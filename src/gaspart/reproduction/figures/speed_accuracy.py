@@ -36,7 +36,7 @@ SETTINGS = {
     "order_up_to": positive("largest relative error that the fits of the order use"),
     "cells": names("experiments of the Enskog model in its default cells"),
 }
-SEEN = 3.5  # smallest significant error, in standard errors
+SEEN = 3.5  # smallest significant error, in standard errors of a normal distribution
 FITTED = 3  # errors in a fit of their order: two always have one, even if the error changes its sign
 
 
@@ -51,7 +51,7 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
     inner = {name: ("observable", "step")[2 - np.ndim(value) :] for name, value in rows[0].items()}
     dataset = from_rows("row", rows, inner).assign_coords(observable=list(OBSERVABLES))
     orders = np.array([error_orders(row, settings["order_up_to"]) for row in rows])
-    for n, name in enumerate(("order", "order_error")):
+    for n, name in enumerate(("order", "order_error", "order_freedom")):
         dataset[name] = (("row", "observable"), orders[..., n])
     long = [
         point for point in points if point.job == "simulate" and point.experiment not in settings["cells"]
@@ -68,20 +68,20 @@ def measure(points: list[Point], settings: dict) -> xr.Dataset:
     return dataset
 
 
-def error_orders(row: dict, largest: float) -> list[tuple[float, float]]:
-    """Fit the order of each observable's error in the time step; its error is scaled by the scatter. The
-    order is NaN without `FITTED` errors of equal sign.
+def error_orders(row: dict, largest: float) -> list[tuple[float, float, float]]:
+    """Fit the order of each observable's error in the time step; its error is scaled by the scatter, and has
+    the degrees of freedom of the errors. The order is NaN without `FITTED` errors of equal sign.
     """
     orders = []
-    for bias, error in zip(row["bias"], row["bias_error"], strict=True):
+    for bias, error, freedom in zip(row["bias"], row["bias_error"], row["bias_freedom"], strict=True):
         size = np.abs(bias)
-        seen = (size > SEEN * error) & (size < largest)
+        seen = (Estimate(size, error, freedom).deviation > SEEN) & (size < largest)
         if seen.sum() < FITTED or np.unique(np.sign(bias[seen])).size > 1:
-            orders.append((np.nan, np.nan))
+            orders.append((np.nan, np.nan, np.nan))
             continue
         law = fit_power_law(row["time_step"][seen], size[seen], error[seen])
         scatter = max(1.0, law.chi_square / max(1, law.degrees_of_freedom)) ** 0.5
-        orders.append((law.exponent, law.exponent_error * scatter))
+        orders.append((law.exponent, law.exponent_error * scatter, float(freedom[0])))
     return orders
 
 

@@ -164,6 +164,12 @@ EXPERIMENT: dict[str, Kind] = {
     "effort": positive(
         "the effort of this experiment, instead of that of the config", maximum=100, default=None
     ),
+    "least_effort": positive(
+        "below it runs would be short beside the memory of what they measure, and their uncertainties too "
+        "small: such an experiment has this effort at least",
+        maximum=1,
+        default=None,
+    ),
 }
 
 ANIMATION: dict[str, Kind] = {
@@ -241,6 +247,16 @@ def config(figures: dict[str, Kind], own: Kind) -> dict[str, Kind]:
     }
 
 
+def effort_of(config: Mapping[str, Any], experiment: str) -> float:
+    """Return the effort of an experiment; inf if the config does not state it as a number."""
+    experiments = config.get("experiments")
+    block = experiments.get(experiment) if isinstance(experiments, dict) else None
+    if not isinstance(block, dict):
+        return math.inf
+    efforts = block.get("effort", config.get("effort", 1.0)), block.get("least_effort") or 0.0
+    return max(efforts) if all(isinstance(effort, int | float) for effort in efforts) else math.inf
+
+
 MOST_POINTS = 100_000
 """Maximum number of points of a config. Planning takes half a millisecond a point."""
 
@@ -252,7 +268,7 @@ def points(config: dict, experiment: str) -> list[Point]:
     block = config["experiments"][experiment]
     where = f"experiments.{experiment}"
     _check_size(config, experiment)
-    effort = block.get("effort", config.get("effort", 1.0))
+    effort = effort_of(config, experiment)
     by_name: dict[str, Point] = {}
     varied = block.get("grid")
     for varying in _combinations({} if varied is None else varied, f"{where}.grid"):
