@@ -64,16 +64,16 @@ def draw() -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.0, 2.8), layout="constrained")
     for name, marker in (("conclusive", "o"), ("agree", "s")):
         left.plot(time, [float(row[name]) / float(row["claims"]) for row in rows], f"{marker}-", label=name)
-    left.set(xlabel="CPU time in min", ylabel="share of claims", xscale="log", ylim=(0.0, 1.0))
-    left.legend()
+    left.set(ylabel="share of claims", ylim=(0.0, 1.0))
+    left.legend(loc="center left")
     right.plot(time, [float(row["rms z"]) for row in rows], "o-")
     right.axhline(1.0, linewidth=0.8, color="0.5")
-    right.set(
-        xlabel="CPU time in min", ylabel="rms deviation in standard errors", xscale="log", ylim=(0.0, 2.0)
-    )
+    right.set(ylabel="rms deviation (standard errors)", ylim=(0.0, 1.5))
     for axes in (left, right):
+        axes.set(xlabel="CPU time in min", xlim=(0.0, None))
         for row, x in zip(rows, time, strict=True):
-            axes.annotate(row["effort"], (x, 0.03), xycoords=("data", "axes fraction"), ha="center")
+            at = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "bottom"}
+            axes.annotate(row["effort"], (x, 0.03), rotation=90, fontsize="small", **at)
     figure.savefig("docs/trade.png", dpi=150)
 
 
