@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from gaspart.kernels.physics.contact import (
     exchange_equal,
     fifth_root,
     restitution_of,
+    restitution_of_pair,
     time_to_contact,
 )
 
@@ -218,3 +220,14 @@ def test_a_vanishing_pull_changes_nothing(r, v):
         assert pulled == pytest.approx(straight, rel=1e-6)
     else:
         assert pulled > 1e20
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize(("mobility", "expected"), [(1.0, (1.0, -1.0)), (0.0, (0.9, 0.3))])
+def test_a_contact_with_a_fixed_particle_within_the_duration_is_elastic(mobility, expected):
+    """Unless the other one is pressed, and moves no more."""
+    each = {"latest": [0.0, 0.0], "met": [0.0, 0.0], "contacts": [0, 0], "elastic": [0]}
+    duration = SimpleNamespace(inverse_mass=[1.0, 0.0], length=0.1, **each)
+    law = SimpleNamespace(inverse_mass=[mobility, 0.0], tangential=0.3)
+    flights = [SimpleNamespace(clock=0.05)] * 2
+    assert restitution_of_pair(flights, 0, 1, 0.9, law, duration) == expected
