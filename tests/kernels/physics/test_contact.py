@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from gaspart.kernels.physics.ballistic import time_against, time_along, time_to_contact_pulled
+from gaspart.kernels.physics.collision import exchange_with_vibration
 from gaspart.kernels.physics.contact import (
     contact_root,
     exchange,
@@ -231,3 +232,13 @@ def test_a_contact_with_a_fixed_particle_within_the_duration_is_elastic(mobility
     law = SimpleNamespace(inverse_mass=[mobility, 0.0], tangential=0.3)
     flights = [SimpleNamespace(clock=0.05)] * 2
     assert restitution_of_pair(flights, 0, 1, 0.9, law, duration) == expected
+
+
+@pytest.mark.interpreted
+@pytest.mark.parametrize("modes", [[2.0, -1.0], [-1.0, 2.0]])
+def test_a_mode_takes_the_energy_of_the_approach_and_gives_its_own(modes):
+    """A reduced mass of 2, and -1 without a mode."""
+    left = np.array(modes)
+    assert exchange_with_vibration(0, 1, 3.0, 0.5, left) == math.sqrt(2.0)
+    assert sorted(left) == [-1.0, 9.0]
+    assert exchange_with_vibration(0, 1, 3.0, 0.5, np.array([-1.0, -1.0])) == -1.0
