@@ -14,6 +14,7 @@ from scenes import closest, gas, mixtures
 import gaspart as gp
 from gaspart.state.boxes import deepest_overlap
 from gaspart.state.initial import initial_state, random_insertion
+from gaspart.state.insertion import wall_rows
 from gaspart.state.random import stream
 
 
@@ -314,3 +315,11 @@ def test_the_deepest_overlap_in_a_heap_is_that_of_all_pairs(seed, width):
     depth = 1.0 - apart / (radii[:, None] + radii)
     np.fill_diagonal(depth, 0.0)
     assert deepest_overlap(positions, radii, np.full(3, 4.0), (False,) * 3) == pytest.approx(depth.max())
+
+
+@pytest.mark.parametrize(("x", "images"), [(5.0, 1), (0.2, 2), (9.8, 2)])
+def test_a_wall_near_a_periodic_face_has_an_image_beyond_the_other(x, images):
+    walls = [gp.Wall((x, 3.0), (x, 7.0))]
+    container = gp.Container((10.0, 10.0), ("periodic", "wall"))
+    rows, numbers = wall_rows(gp.Scene(container, [gp.Species(3, 0.5, temperature=1.0)], walls=walls))
+    assert len(rows) == images and numbers.tolist() == [0] * images
